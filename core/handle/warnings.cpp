@@ -130,7 +130,10 @@ bool doubtful_supply(double rate, double film) {
 bool doubtful_liquid(const rp_config &config) {
   if (config.fluid_model == RP_FLUID_NONE || config.fluid_model == RP_FLUID_REGIMES) return false;
   bool doubtful = outside(config.fluid_roughness, fluid_roughness_range) ||
-                  outside(config.fluid_viscosity, fluid_viscosity_range);
+                  outside(config.fluid_viscosity, fluid_viscosity_range) ||
+                  outside(config.fluid_hardness, fluid_hardness_range) ||
+                  (config.fluid_mean_pressure > 0 &&  // 0: the contact's own
+                   outside(config.fluid_mean_pressure, pressure_range));
   for (int k = 0; k < config.fluid_viscosity_points; ++k)
     doubtful = doubtful || outside(config.fluid_viscosity_value[k], fluid_viscosity_range);
   doubtful = doubtful || config.fluid_boundary_friction > config.friction_coefficient;

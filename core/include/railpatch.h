@@ -201,7 +201,8 @@ enum {
     "the liquid's film begins before the grid, which must reach farther ahead of the contact")     \
   X(RP_WARNING_LIQUID, 29,                                                                         \
     "of a liquid roughness is above 5e-5 m, a viscosity outside 1e-4 to 100 Pa s, eyring_stress "  \
-    "outside 1e5 to 1e9 Pa, or boundary_friction above the coefficient of the dry contact")        \
+    "outside 1e5 to 1e9 Pa, hardness outside 1e8 to 1e11 Pa, mean_pressure outside 1e7 to 5e9 "    \
+    "Pa, or boundary_friction above the coefficient of the dry contact")                           \
   X(RP_WARNING_SLIPPERY, 30,                                                                       \
     "effective_friction of a wet contact is below 0.001: the liquid carries all of the load, see " \
     "viscosity, in Pa s, and roughness, in m")

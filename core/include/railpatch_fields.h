@@ -655,6 +655,7 @@
   X(fluid_roughness, 0.0, 5e-5)                \
   X(fluid_viscosity, 1e-4, 100.0)              \
   X(fluid_eyring_stress, 1e5, 1e9)             \
+  X(fluid_hardness, 1e8, 1e11)                 \
   X(friction_halving_speed, 1e-5, 100.0)       \
   X(friction_memory_distance, 0.0, 0.02)       \
   X(y, -0.025, 0.025)

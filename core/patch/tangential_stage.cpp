@@ -124,8 +124,8 @@ double tangential_stage::capacity(const patch_problem &problem, const pressure_o
                                   const patch_memory &memory, const heat_stage &heat) const {
   const patch_scene &scene = shared_.scene;
   const bool by_velocity = scene.law && scene.law->by_velocity;
-  const bool uneven =
-      by_velocity || scene.friction_variation.varies() || heat.feeds_back() || scene.has_strips();
+  const bool uneven = by_velocity || scene.friction_variation.varies() || heat.feeds_back() ||
+                      (has_physics && memory.fluid_pressure.size() > 0);
   if (fitted_ || !uneven) return scene.friction() * pressure.normal_force;
   double sum = 0;
   for (size_t i = 0; i < static_cast<size_t>(problem.g.count()); ++i)

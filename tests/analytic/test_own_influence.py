@@ -356,7 +356,7 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "too few columns": (half_space(NX - 1, NY), r"has the shape \(27, 35\), allowed at least"),
     "even": ({**half_space(NX, NY), "yy": np.ones((28, 40))}, "yy has the shape .*two odd"),
     "one row": ({**half_space(NX, NY), "yy": np.ones(37)}, "yy has the shape .*two odd numbers"),
-    "nan": (spoiled("xx", (2, 3), np.nan), "xx has a value that is no finite number"),
+    "nan": (spoiled("xx", (2, 3), np.nan), "xx has no finite number at 3 elements along"),
     "not even along": (spoiled("zz", (0, 3), 1.01), "zz is not even along rolling"),
     "not even across": (spoiled("yy", (3, 0), 1.01), "yy is not even across"),
     "not odd": (spoiled("xy", (3, 2), 1.01), "xy is not odd along rolling"),
@@ -431,10 +431,10 @@ def test_files_that_are_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "zz has a value that is no finite number, or lacks one"),
-        ("0 0 1e-14 1e-14 1e-14 0", "or lacks one"),
+        ("", "has no rows of offsets that the grid has"),
+        ("0 0 1e-14 1e-14 1e-14 0", "zz has no finite number at .* elements along"),
         ("0 0 1e-14", r"own\.csv:1: 3 values, allowed 6"),
-        ("0 0.5 1e-14 1e-14 1e-14 0", r"own\.csv:1: .*two whole offsets"),
+        ("0 0.5 1e-14 1e-14 1e-14 0", r"own\.csv:1: offsets are 0, 0.5, allowed whole numbers"),
         ("0 0 1e-14 1e-14 1e-14 0\n0 0 1e-14 1e-14 1e-14 0", "csv:2: offset 0, 0 is given twice"),
         ("0 0 1e-14 1e-14 x 0", r"csv:1: value is 'x', allowed a finite number"),
     ],
@@ -502,6 +502,8 @@ def test_doubts(tmp_path: Path) -> None:
     mixed = half_space(NX, NY)
     arrays = {name: values * (1.0 if name == "zz" else 1e3) for name, values in mixed.items()}
     found = railpatch.solve(patch(written(tmp_path, arrays)))
+    states = railpatch.solve_many(patch(written(tmp_path, arrays)), {"creepage": np.zeros((2, 2))})
+    assert states.doubts == [text for text in found.warnings if "of an element by itself" in text]
     for name in ("xx", "yy"):
         words = f"{name} of an element by itself is "
         assert any(words in text for text in found.warnings)

@@ -281,3 +281,17 @@ def test_refused_on_wheels() -> None:
     """The liquid comes from beyond the grids of wheels."""
     with pytest.raises(railpatch.CaseError, match=r"fluid\.model"):
         railpatch.solve({**WHEELSET, "fluid": BASE["fluid"]})
+
+
+@pytest.mark.parametrize("fluid", [{}, OIL])
+def test_utilised_friction_is_of_what_can_slip(fluid: dict[str, Any]) -> None:
+    """Over the asperities' and the liquid's bound, not over the load: one where all slips, but for
+    what tractions lean to the sides."""
+    motion = {"creepage": [1e-2, 0.0], "rolling_speed": 20.0}
+    r = solved({**with_fluid(**fluid), "motion": motion})
+    assert r["utilised_friction"] == pytest.approx(1.0, abs=1e-4)
+    less = solved(with_fluid(**fluid))
+    most = less["effective_friction"] * less["normal_force"]
+    used = np.hypot(*less["creep_force"]) / most
+    assert less["utilised_friction"] == pytest.approx(used, rel=1e-6)
+    assert used < 0.999

@@ -297,6 +297,16 @@ def test_command_prints_a_summary(tmp_path: Path) -> None:
     assert found["statuses"] == {"converged": 6}
 
 
+def test_outputs_that_no_case_has_are_told(tmp_path: Path) -> None:
+    """A force has three components; a name that only some have leaves its place empty."""
+    sweep = SWEEP.replace('"spin_moment"', '"creep_force[7]"')
+    arguments = ["sweep", str(files(tmp_path, sweep)), "-o", str(tmp_path / "out")]
+    ended = CliRunner().invoke(cli, arguments)
+    assert ended.exit_code == 0, ended.output
+    assert "outputs: no case has 'creep_force[7]'" in ended.output
+    assert CliRunner().invoke(cli, [*arguments, "--strict"]).exit_code == 2
+
+
 def test_example_of_the_docs(tmp_path: Path) -> None:
     """What the command prints is what docs/sweeps.md shows; with the scene that `railpatch init`
     writes it is solved."""

@@ -44,8 +44,6 @@ def test_percentiles_of_a_ramp():
     rank = 0.9985 * (len(times) - 1)
     at = np.interp(rank, np.arange(len(times)), times) - late
     assert found.acceleration[0] == pytest.approx(0.1 * at, rel=1e-6)
-    # of ratios the lower of the two
-    at = times[math.floor(rank)] - late
     assert found.ratio == pytest.approx(1e3 * at / 5e4, rel=1e-6)
     assert found.load == pytest.approx(5e4) == found.median_load
     # left and right outward by as much: no force of the wheelset

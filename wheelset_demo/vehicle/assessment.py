@@ -30,6 +30,7 @@ LEAST_RATE = 5 * CORNER
 SPACING = 0.5  # m, of the means
 LEAST_WAY = 50.0  # m, of means
 PERCENTILES = (0.15, 50.0, 99.85)
+RANKS = ("lower", "higher")  # between which a percentile lies
 RATIO_LIMIT = 0.8
 BASE_SHIFT = 10e3  # N
 UNLOADING_LIMIT = 0.6  # of the wheel's load at rest
@@ -104,8 +105,11 @@ def assess(trace: Kept, interval: float) -> Assessment | None:
     moved = felt[:, 1:] + np.array([0.0, GRAVITY])
     least, _, greatest = np.percentile(moved, PERCENTILES, axis=0)
     lateral, vertical = np.maximum(np.abs(least), np.abs(greatest)).tolist()
-    # a wheel in the air has no ratio; interpolation between ranks must not meet infinities
-    by_wheel = np.percentile(ratios, PERCENTILES[-1], axis=0, method="lower")
+    # a wheel in the air has no ratio: nothing is interpolated from there
+    lower, upper = (np.percentile(ratios, PERCENTILES[-1], axis=0, method=m) for m in RANKS)
+    part = 0.01 * PERCENTILES[-1] * (len(places) - 1) % 1
+    with np.errstate(invalid="ignore"):
+        by_wheel = np.where(np.isfinite(lower), lower + part * (upper - lower), upper)
     inward, outward = np.percentile(guiding, PERCENTILES[::2], axis=0)
     ratio, shifts = by_wheel.max(), np.maximum(np.abs(low), np.abs(high))
     return Assessment(

@@ -107,9 +107,10 @@ def _read(path: Path, _size: int, _changed: int, shape: tuple[int, int], tractio
 def _from_npz(path: Path, names: tuple[str, ...]) -> dict[str, Array]:
     """Arrays by name."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            if isinstance(file, np.ndarray):
-                raise ValueError("one array")
+        opened = np.load(path, allow_pickle=False)
+        if isinstance(opened, np.ndarray):
+            raise ValueError("one array without a name, as .npy files have")
+        with opened as file:
             unknown = sorted(set(file) - set(NAMES))
             read = {name: np.asarray(file[name]) for name in NAMES if name in file}
             if any(array.dtype.kind not in "fiu" for array in read.values()):
@@ -129,7 +130,12 @@ def _from_csv(path: Path, names: tuple[str, ...], shape: tuple[int, int]) -> dic
     ny, nx = shape
     found = np.full((len(names), 2 * ny - 1, 2 * nx + 1), np.nan)
     for line, row in read_rows(path, KEY):
-        if len(row) not in many or any(value != int(value) for value in row[:2]):
+        if len(row) in many and any(value != int(value) for value in row[:2]):
+            raise CaseError(
+                f"{KEY}: {path}:{line}: offsets are {row[0]:g}, {row[1]:g}, allowed whole numbers "
+                "of elements, along rolling and across"
+            )
+        if len(row) not in many:
             allowed = " or ".join(map(str, many))
             raise CaseError(
                 f"{KEY}: {path}:{line}: {len(row)} values, allowed {allowed}: two whole offsets in "
@@ -142,6 +148,8 @@ def _from_csv(path: Path, names: tuple[str, ...], shape: tuple[int, int]) -> dic
         if not np.isnan(found[at]).all():
             raise CaseError(f"{KEY}: {path}:{line}: offset {x}, {y} is given twice")
         found[at] = row[2 : 2 + len(names)]
+    if np.isnan(found).all():
+        raise CaseError(f"{KEY}: {path} has no rows of offsets that the grid has, {nx} by {ny}")
     # of offsets that have none, those of their mirror images
     for k, name in enumerate(names):
         for axis in (0, 1):
@@ -174,7 +182,8 @@ def quadrant(what: str, values: Array, name: str, shape: tuple[int, int]) -> Arr
     my, mx = values.shape[0] // 2, values.shape[1] // 2
     values = values[my - ny + 1 : my + ny, mx - nx : mx + nx + 1]
     if not np.isfinite(values).all():
-        raise CaseError(f"{what} has a value that is no finite number, or lacks one")
+        y, x = np.argwhere(~np.isfinite(values))[-1] - (ny - 1, nx)
+        raise CaseError(f"{what} has no finite number at {x} elements along rolling and {y} across")
     sign = -1.0 if name == "xy" else 1.0
     for axis, along in ((1, "along rolling"), (0, "across")):
         apart = np.abs(values - sign * np.flip(values, axis)).max()

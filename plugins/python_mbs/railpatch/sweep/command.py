@@ -96,6 +96,7 @@ def sweep(
         show(found)
     warned = Counter(text for row in found.rows for text in row.warnings)
     lines = [f"{text}; in {count} cases" for text, count in warned.most_common()]
+    lines += [f"outputs: no case has {name!r}" for name in found.never()]
     tell_warnings(lines, strict=strict, quiet=quiet)
     if found.failed:
         if not quiet:

@@ -31,3 +31,9 @@ class Sweep:
     def failed(self) -> list[int]:
         """Numbers of the cases without a good result."""
         return [i for i, row in enumerate(self.rows) if row.status not in GOOD]
+
+    def never(self) -> list[str]:
+        """Outputs that no good case has; none where no case is good."""
+        good = [row.outputs for row in self.rows if row.status in GOOD]
+        values = zip(self.outputs, zip(*good, strict=True), strict=True) if good else ()
+        return [name for name, of in values if all(value is None for value in of)]

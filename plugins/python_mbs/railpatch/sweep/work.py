@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 from railpatch.case.kinds import Ending, kind_of
 from railpatch.case.load import KINDS, Case, Scene, check_case
 from railpatch.case.moving import moving_keys
+from railpatch.case.own_influence import influence_doubts
 from railpatch.case.patch import PatchCase
 from railpatch.contact import Contact, solve
 from railpatch.errors import CaseError, ProfileError
@@ -160,9 +161,9 @@ def contact_ending(chunk: Chunk, point: Sequence[Value]) -> Ending:
 
 
 def doubts_of(case: Case) -> list[str]:
-    """Warnings of the profiles of wheels, found once for each pair."""
+    """Warnings of the profiles of wheels, found once for each pair, and of own coefficients."""
     if isinstance(case, PatchCase):
-        return []
+        return influence_doubts(case, Path())
     known = getattr(_kept, "doubts", None)
     if known is None:
         known = _kept.doubts = {}
