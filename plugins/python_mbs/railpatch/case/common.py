@@ -540,6 +540,20 @@ def couples(material: Material) -> bool:
     return abs(wheel - rail) > 1e-12 * max(wheel, rail)
 
 
+def check_whole_theory(case: Any, where: str) -> Problems:
+    """Of a patch whose bodies are solved on the uniform grid alone, without derivatives. where:
+    with which key."""
+    grid, method = case.grid, case.method
+    if method.normal != "half_space":
+        yield relation("method.normal", repr(method.normal), f"'half_space' {where}")
+    if method.tangential not in ("full", "none"):
+        yield relation("method.tangential", repr(method.tangential), f"'full', 'none' {where}")
+    if grid is not None and grid.fitted is not None:
+        yield relation("grid.fitted", str(grid.fitted), f"{LEFT_OUT} {where}")
+    if method.derivatives:
+        yield relation("method.derivatives", "True", f"False {where}")
+
+
 def check_coupled(grid: Grid | None, method: Method) -> Problems:
     """Bodies whose normal and tangential problem go together: the exact theory on the grid."""
     why = "with unlike (1 - 2 nu)/G of wheel and rail in 'material'"

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from railpatch.case.common import check_whole_theory
 from railpatch.case.gap import read_gap, read_rows
 from railpatch.case.types import LEFT_OUT, Problems, relation
 from railpatch.case.viscous import is_viscous
@@ -64,21 +65,14 @@ def check_own_influence(case: Any) -> Problems:
 
 
 def _check_method(case: Any, where: str) -> Problems:
-    method, motion = case.method, case.motion
+    motion = case.motion
     for regime in dict.fromkeys((motion.regime, *motion.of_steps)):
         if regime == "transient_rolling":
             allowed = f"'steady_rolling', 'shift' or 'none' {where}: steps are of whole elements"
             yield relation("motion.regime", repr(regime), allowed)
     if motion.changes:
         yield relation("motion.regimes", "given", f"{LEFT_OUT} {where}")
-    if method.normal != "half_space":
-        yield relation("method.normal", repr(method.normal), f"'half_space' {where}")
-    if method.tangential not in ("full", "none"):
-        yield relation("method.tangential", repr(method.tangential), f"'full', 'none' {where}")
-    if case.grid is not None and case.grid.fitted is not None:
-        yield relation("grid.fitted", str(case.grid.fitted), f"{LEFT_OUT} {where}")
-    if method.derivatives:
-        yield relation("method.derivatives", "True", f"False {where}")
+    yield from check_whole_theory(case, where)
 
 
 def read_own_influence(path: Path, shape: tuple[int, int], *, tractions: bool) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from railpatch.case.common import Material, couples
+from railpatch.case.common import Material, check_whole_theory, couples
 from railpatch.case.types import LEFT_OUT, Problems, relation
 
 RATIO, TIME = "material.viscoelastic_ratio", "material.relaxation_time"
@@ -80,14 +80,7 @@ def _check_method(case: Any, where: str) -> Problems:
     if "rolling_speed" not in motion.model_fields_set:
         allowed = f"a number in m/s {where}: how far the bodies yield in the contact depends on it"
         yield relation("motion.rolling_speed", "missing", allowed)
-    if method.normal != "half_space":
-        yield relation("method.normal", repr(method.normal), f"'half_space' {where}")
-    if method.tangential not in ("full", "none"):
-        yield relation("method.tangential", repr(method.tangential), f"'full', 'none' {where}")
-    if case.grid is not None and case.grid.fitted is not None:
-        yield relation("grid.fitted", str(case.grid.fitted), f"{LEFT_OUT} {where}")
-    if method.derivatives:
-        yield relation("method.derivatives", "True", f"False {where}")
+    yield from check_whole_theory(case, where)
     if method.accuracy is not None:
         shown = f"{LEFT_OUT} {where}, which has no error estimate: give 'grid'"
         yield relation("method.accuracy", method.accuracy, shown)
