@@ -92,10 +92,10 @@ def test_every_kind_with_a_run_has_units() -> None:
         ([7.62e8, 7.98e8], "Pa", "762 to 798\u00a0MPa"),
         ([-31473.0, 27522.0], "N", "\u221231.5 to 27.5\u00a0kN"),
         ([0.01, 0.01], "rad", "0.01\u00a0rad"),
-        ([12000.0], "", "12\u2009000"),
+        ([12000.0], "", "12\u202f000"),
         ([2e-10, 4.82e-8], "m", "0.2 to 48.2\u00a0nm"),
         ([0.3], "m", "0.3\u00a0m"),
-        ([12000.0], "m", "12\u2009000\u00a0m"),
+        ([12000.0], "m", "12\u202f000\u00a0m"),
     ],
 )
 def test_numbers_at_a_glance(values: list[float], unit: str, text: str) -> None:

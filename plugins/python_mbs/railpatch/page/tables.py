@@ -51,10 +51,11 @@ def power_text(power: int) -> str:
 
 
 def whole(value: float) -> str:
-    """Whole number with thin spaces between thousands; a dash where there is no number."""
+    """Whole number with narrow spaces between thousands, where no line breaks; a dash where there
+    is no number."""
     if not np.isfinite(value):
         return "-"
-    return f"{value:,.0f}".replace(",", "\u2009").replace("-", "\u2212")
+    return f"{value:,.0f}".replace(",", "\u202f").replace("-", "\u2212")
 
 
 def _row(tag: str, cells: Sequence[object], numeric: Sequence[bool]) -> str:
