@@ -12,6 +12,8 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 export PIP_CACHE_DIR := $(CURDIR)/build/cache/pip
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export PIP_REQUIRE_VIRTUALENV := 1
+# empty: Python keeps what it compiles, for the many processes that the tests start
+export PYTHONDONTWRITEBYTECODE :=
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 export CTEST_PARALLEL_LEVEL := $(JOBS)
 # the transforms of the Python package: eigen, or fftw, which puts it under the GPL

@@ -88,6 +88,6 @@ def page(name: str, found: Mapping[str, Any], table: Mapping[str, Vector], place
         "<h2>Over the depth</h2>",
         plot(over_depth(table, MEASURES), "depths"),
         folded("All depths", html_table(head, rows)),
-        folded("How it was computed", text),
+        folded("How it was computed", text, on_paper=True),
     ]
     return document(f"{name}: below the surface", "".join(body)).encode()

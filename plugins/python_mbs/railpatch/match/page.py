@@ -354,4 +354,4 @@ def details_of(match: Match) -> str:
         ["evaluations of all points", str(sum(j.evaluations for j in match.explanations))],
         ["time", f"{match.seconds:.3g} s"],
     ]
-    return folded("How it was found", table([], lines, "summary"))
+    return folded("How it was found", table([], lines, "summary"), on_paper=True)

@@ -47,11 +47,13 @@ def breakable(name: str) -> str:
     return re.sub(r"([._])(?=[A-Za-z])", r"\1<wbr>", escape(name))
 
 
-def folded(title: str, html: str, *, open_: bool = False) -> str:
-    """A section that is closed until it is wanted; empty where there is nothing in it."""
+def folded(title: str, html: str, *, open_: bool = False, on_paper: bool = False) -> str:
+    """A section that is closed until it is wanted; empty where there is nothing in it.
+    on_paper: whether it is printed though it is closed."""
     if not html:
         return ""
-    return f"<details{' open' if open_ else ''}><summary>{escape(title)}</summary>{html}</details>"
+    marks = (" class=paper" if on_paper else "") + (" open" if open_ else "")
+    return f"<details{marks}><summary>{escape(title)}</summary>{html}</details>"
 
 
 def against(value: float, limit: float, text: str) -> tuple[str, str]:

@@ -219,7 +219,7 @@ def _administration(data: Positions) -> list[str]:
         work += ["<h2>Work of the force balance</h2>"]
         work += [plot(figures.balance_work(data), "balance-work")]
     return [
-        folded("The run: scene, theory, profiles, files", tables.summary(data)),
+        folded("The run: scene, theory, profiles, files", tables.summary(data), on_paper=True),
         folded("Work of the solver" if work else "", "".join(work)),
     ]
 

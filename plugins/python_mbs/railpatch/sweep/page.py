@@ -211,7 +211,7 @@ def _sections(sweep: Sweep) -> list[str]:
         ["time", f"{took:.3g} s of all cases, {sweep.wall_time:.3g} s now"],
         ["cases that were there", str(sweep.reused)],
     ]
-    return [*parts, folded("How it was computed", table([], lines, "summary"))]
+    return [*parts, folded("How it was computed", table([], lines, "summary"), on_paper=True)]
 
 
 def _extremes(sweep: Sweep, names: list[str]) -> list[str]:

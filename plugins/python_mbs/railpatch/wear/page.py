@@ -53,7 +53,7 @@ def write_wear_page(rows: list[dict[str, Any]], folder: Path, name: str) -> Path
         "<h2>Over the way</h2>",
         plot(course_figure(rows, "conicity", "equivalent conicity"), "conicity"),
         plot(course_figure(rows, "y_over_q", "greatest Y/Q of the mix"), "quotient"),
-        folded("Steps", steps_table(rows)),
+        folded("Steps", steps_table(rows), on_paper=True),
     ]
     page = folder / "wear.html"
     write_whole(page, document(f"wear {name}", "".join(body)).encode())

@@ -112,9 +112,8 @@ def administration(report: Report) -> str:
         + "<p>To carry times over to another machine, scale them by its time for one real "
         f"{FFT_SIZE} x {FFT_SIZE} FFT. Seed {SEED}.</p>"
     )
-    return folded("What the words mean", table((), DEFINITIONS, "summary")) + folded(
-        "The machine", text
-    )
+    words = folded("What the words mean", table((), DEFINITIONS, "summary"), on_paper=True)
+    return words + folded("The machine", text)
 
 
 def targets(report: Report) -> str:

@@ -30,7 +30,7 @@ def page(report: Report) -> str:
         plot(figure(report), "time"),
         "<h2>By family and method</h2>",
         table(text.GROUP_HEAD, map(text.group_cells, report.groups)),
-        folded("What the words mean", table((), text.MEANINGS, "summary")),
+        folded("What the words mean", table((), text.MEANINGS, "summary"), on_paper=True),
         "<h2>What is not clean</h2>",
         table(text.ROW_HEAD, unclean) if unclean else "<p>Nothing.</p>",
         folded(

@@ -42,7 +42,7 @@ def body(
         f"{signs(data)} {escape(nadal_line(data))}</p>",
         plot(vehicle_figures.beside_limits(data), "limits"),
         tables.table(limits.head(data), limits.rows(data)),
-        folded("What is held against the standard", f"<p>{escape(STANDARD)}</p>"),
+        folded("What is held against the standard", f"<p>{escape(STANDARD)}</p>", on_paper=True),
         *assessed.section(data),
         "<h2>Wheels</h2><p class=sub>Greatest and least values on the way; y is the wheelset's "
         "place across the track.</p>",
