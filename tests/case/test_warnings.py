@@ -11,6 +11,7 @@ import railpatch
 from bits.combinations import sample
 from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner
+from numpy.typing import NDArray
 from railpatch.case.kinds import kinds, write_example
 from railpatch.command.cli import cli
 from railpatch.evidence.continuity.worn import (
@@ -56,6 +57,12 @@ def stored(air: float) -> dict[str, Any]:
     return with_values(LOADED, temperature=heat, wheelset__time_step=1e-3, **STILL)
 
 
+def sphere(unit: float) -> NDArray[np.float64]:
+    """Undeformed distance of a wheel of 0.46 m, 16 x 16 elements of 1 mm. unit: in a metre."""
+    x = 1e-3 * (np.arange(16) - 7.5)
+    return unit * (x**2 + x[:, None] ** 2) / (2 * 0.46)
+
+
 # what was meant -> the case, and words of what is said
 MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
     "GPa as Pa": (with_values(PATCH, material={"shear_modulus": 82.0}), "shear_modulus"),
@@ -80,6 +87,23 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
             grid={"elements": [24, 1]},
         ),
         "wider than a circle of 60 mm",
+    ),
+    "a line contact's width in mm": (
+        with_values(
+            PATCH,
+            geometry={"line_contact_radius": 0.46, "width": 10.0},
+            load={"normal_force": 1e7},
+            grid={"elements": [24, 1]},
+        ),
+        "geometry.width is 10 m",
+    ),
+    "undeformed distances in mm": (
+        with_values(
+            PATCH,
+            geometry={"undeformed_distance": sphere(1e3).tolist()},
+            grid={"element_size": [1e-3, 1e-3]},
+        ),
+        "distances are in m",
     ),
     "creepage in per cent": (with_values(PATCH, motion__creepage=[0.3, 0.0]), "creepage"),
     "creepage in per mille": (with_values(PATCH, motion__creepage=[0.0, 2.0]), "creepage"),
@@ -196,6 +220,11 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
 }
 # what lies just within the ranges, and published numbers: none is doubted
 WITHIN: dict[str, dict[str, Any]] = {
+    "undeformed distances": with_values(
+        PATCH,
+        geometry={"undeformed_distance": sphere(1.0).tolist()},
+        grid={"element_size": [1e-3, 1e-3]},
+    ),
     "a soft layer": yielding(yield_stress=1e4, hardening=-1e7),
     "a steel's layer": yielding(yield_stress=1e10, hardening=1.23e14),
     "a table": yielding(hardening_table=[[0.0, 1e8], [1e-6, 1.5e8], [1e-3, 2e8]]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from railpatch.errors import CaseError
 from railpatch.report.vehicle import assessed
 
 from wheelset_demo.scene import scene_file
+from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.assessment import LEAST_RATE, LEAST_WAY, SLIDING
 from wheelset_demo.vehicle.bodies import VehicleTable
 from wheelset_demo.vehicle.deviations import DipTable
@@ -51,6 +53,14 @@ def test_packaged_vehicles_have_no_warning(name: str) -> None:
     assert doubtful_bodies(scene.vehicle) == []
     assert doubtful_elements(scene.vehicle) == []
     assert doubtful_support(scene.support) == []
+
+
+def test_cant_of_the_inner_rail() -> None:
+    for cant, warned in ((0.1, False), (-0.1, True)):
+        scene = load_vehicle_scene(None, {})
+        curve = AlignmentTable(radius=4000.0, cant=cant)
+        told = doubts_of(replace(scene, alignment=curve))
+        assert any("inner rail" in text for text in told) == warned
 
 
 def test_steps_that_pass_what_excites_a_vehicle() -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from wheelset_demo.scene import GRAVITY
+from wheelset_demo.vehicle.alignment import AlignmentTable
 from wheelset_demo.vehicle.bodies import BodyTable, VehicleTable
 from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.elements import ElementTable
@@ -67,6 +68,7 @@ def doubts_of(scene: VehicleScene) -> list[str]:
         *doubtful_bodies(scene.vehicle),
         *doubtful_elements(scene.vehicle),
         *doubtful_support(scene.support),
+        *low_outer_rail(scene.alignment),
         *unmet_dips(scene.dip, scene.way),
         *unmet_water(scene.wet, scene.way),
     ]
@@ -165,6 +167,15 @@ def doubtful_support(support: SupportTable | None) -> list[str]:
         elif value is not None:
             found.extend(outside(f"support.{key}", value, low, high, unit))
     return found
+
+
+def low_outer_rail(alignment: AlignmentTable) -> Iterator[str]:
+    """The warning of cant the other way round: as in turnouts alone."""
+    if alignment.cant < 0:
+        yield (
+            f"alignment.cant is {alignment.cant:g} m: the inner rail of the curve lies higher; > 0 "
+            "raises the outer one, whichever way the curve turns"
+        )
 
 
 def unmet_dips(dips: tuple[DipTable, ...], reached: float) -> list[str]:

@@ -17,8 +17,8 @@ from railpatch.asked import Asked
 from railpatch.case.keys_of_step import signature
 from railpatch.case.load import Case, Scene, check_table, load_scene
 from railpatch.case.moving import changed_case, moving_keys, with_numbers
-from railpatch.case.own_influence import influence_doubts
 from railpatch.case.patch import Motion, PatchCase
+from railpatch.case.patch_doubts import patch_doubts
 from railpatch.case.scene_profiles import Shelf, beside_sections, placement_doubts, profile_notes
 from railpatch.case.to_core import (
     FORCE_AND_MOMENT,
@@ -408,7 +408,7 @@ def solve(
     said = [
         *contact.placement_doubts(),
         *beside_sections(contact.case),
-        *influence_doubts(contact.case, contact.folder),
+        *patch_doubts(contact.case, contact.folder),
     ]
     result.data["warnings"] = [*result.warnings, *said]
     notes = [*notes_of_solve(contact.case), *_add_pressure_error(contact, result)]

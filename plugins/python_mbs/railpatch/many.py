@@ -15,8 +15,8 @@ from railpatch.case.arrays import plain_numbers
 from railpatch.case.asked import refuse_asked, refuse_changes
 from railpatch.case.load import Case, Scene, load_scene
 from railpatch.case.moving import moving_keys, refuse_unknown
-from railpatch.case.own_influence import influence_doubts
 from railpatch.case.patch import PatchCase
+from railpatch.case.patch_doubts import patch_doubts
 from railpatch.case.to_core import BODY_OF_TABLE, DEVIATION, config_of, field_of, input_of
 from railpatch.case.track import irregularity_of
 from railpatch.case.types import BODIES, SIDES, show
@@ -263,7 +263,7 @@ def solve_many(
         # threads are made for each block: quick states come in larger ones
         if time.perf_counter() - begin < QUICK and 2 * size <= MOST_IN_BLOCK:
             size *= 2
-    said = influence_doubts if isinstance(scene.case, PatchCase) else run_doubts
+    said = patch_doubts if isinstance(scene.case, PatchCase) else run_doubts
     doubts = said(scene.case, scene.folder)
     return found.states(doubts)
 

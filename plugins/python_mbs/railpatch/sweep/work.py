@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any
 from railpatch.case.kinds import Ending, kind_of
 from railpatch.case.load import KINDS, Case, Scene, check_case
 from railpatch.case.moving import moving_keys
-from railpatch.case.own_influence import influence_doubts
 from railpatch.case.patch import PatchCase
+from railpatch.case.patch_doubts import patch_doubts
 from railpatch.contact import Contact, solve
 from railpatch.errors import CaseError, ProfileError
 from railpatch.pressure_error import run_doubts
@@ -161,9 +161,9 @@ def contact_ending(chunk: Chunk, point: Sequence[Value]) -> Ending:
 
 
 def doubts_of(case: Case) -> list[str]:
-    """Warnings of the profiles of wheels, found once for each pair, and of own coefficients."""
+    """Warnings of the profiles of wheels, found once for each pair, and of patches."""
     if isinstance(case, PatchCase):
-        return influence_doubts(case, Path())
+        return patch_doubts(case, Path())
     known = getattr(_kept, "doubts", None)
     if known is None:
         known = _kept.doubts = {}

@@ -1,0 +1,44 @@
+"""Warnings of what a patch can hardly be meant to have, beside those that a step finds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from railpatch.case.gap import KEY, read_gap
+from railpatch.case.own_influence import influence_doubts
+
+WIDEST = 1.0  # m, of a line contact
+
+
+def patch_doubts(case: Any, folder: Path) -> list[str]:
+    """Of any kind of case; of others than patches there are none. folder: where paths start."""
+    if case.kind != "patch":
+        return []
+    return [*wide_lines(case), *steep_gaps(case, folder), *influence_doubts(case, folder)]
+
+
+def wide_lines(case: Any) -> list[str]:
+    """Of a line contact that is longer than any roller."""
+    width = case.geometry.width
+    if width is None or width <= WIDEST:
+        return []
+    return [f"geometry.width is {width:g} m, above {WIDEST:g} m: of a line contact, in m"]
+
+
+def steep_gaps(case: Any, folder: Path) -> list[str]:
+    """Of surfaces that stand on edge: at half of the elements farther apart than the grid is wide.
+    Single ones may be, as where there is nothing."""
+    gap = read_gap(case.geometry.undeformed_distance, folder)
+    if gap is None:
+        return []
+    sides = np.array(case.grid.element_size) * gap.shape[::-1]
+    apart, extent = float(np.median(gap) - gap.min()), float(sides.max())
+    if apart <= extent:
+        return []
+    return [
+        f"{KEY}: half of the elements are {apart:.3g} m or more farther apart than the nearest on a "
+        f"grid of {extent:.3g} m: distances are in m"
+    ]
