@@ -39,6 +39,6 @@ def steep_gaps(case: Any, folder: Path) -> list[str]:
     if apart <= extent:
         return []
     return [
-        f"{KEY}: half of the elements are {apart:.3g} m or more farther apart than the nearest on a "
-        f"grid of {extent:.3g} m: distances are in m"
+        f"{KEY}: half of the elements are {apart:.3g} m or more farther apart than the nearest, "
+        f"on a grid of {extent:.3g} m: distances are in m"
     ]
