@@ -60,11 +60,11 @@ bool influence::close(const grid &a, const grid &b) {
   return std::fabs(log(a.dy * b.dx / (b.dy * a.dx))) < kernel_book::step;
 }
 
-bool influence::set_grid(const grid &g, bool follows) {
+bool influence::set_grid(const grid &g, int followed) {
   // one element more along x: the product is also seen from one element upstream
   const int plan = plans_.find(2 * g.nx + 1, g.ny > 1 ? 2 * g.ny - 1 : 1);
   if (plan < 0) return false;
-  const bool read = follows && book_;
+  const bool read = book_ && followed >= kernel_book::lead;
   const bool same_elements = g.dx == grid_.dx && g.dy == grid_.dy && read == read_;
   const int half_x = plans_.nx(plan) / 2, half_y = plans_.ny(plan) / 2;
   grid_ = g;
@@ -82,9 +82,22 @@ bool influence::set_grid(const grid &g, bool follows) {
     make_spectra();
     return true;
   }
-  if (!same_elements || half_x > half_x_ || half_y > half_y_) make_kernels(half_x, half_y);
+  const bool prepares = book_ && followed > 0;
+  const bool made = same_elements && half_x <= half_x_ && half_y <= half_y_ && !prepares;
+  if (prepares) {
+    half_x_ = half_x;
+    half_y_ = half_y;
+    prepare_book();
+  }
+  if (!made) make_kernels(half_x, half_y);
   make_spectra();
   return true;
+}
+
+void influence::prepare_book() {
+  book_->set_size(plans_.nx(plan_), plans_.ny(plan_));
+  book_->prepare(grid_.dy / grid_.dx,
+                 [&](double ratio, double *const *arrays) { write_page(ratio, arrays); });
 }
 
 // Kept are tables and spectra of xx, yy and xy, without the layer: zz is (1 - nu)/(2 - nu) of xx

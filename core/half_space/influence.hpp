@@ -67,9 +67,10 @@ class influence {
   influence(const medium &of, const fft_plans &plans);
 
   // Prepares kernels and spectra for a grid; false where the grid exceeds the plans. Cheap when
-  // neither element size nor transform size changes. follows: dy/dx is close to that of the grid
-  // that this one follows, so that kept kernels serve it too (kernel_book.hpp), if there are any.
-  bool set_grid(const grid &g, bool follows = false);
+  // neither element size nor transform size changes. followed: how many grids in a row, this one
+  // the last, had a dy/dx close to that of the one before; kept kernels serve it, if there are any,
+  // from kernel_book::lead on.
+  bool set_grid(const grid &g, int followed = 0);
   // Whether it is: what is kept reaches as far.
   static bool close(const grid &a, const grid &b);
 
@@ -108,6 +109,7 @@ class influence {
 
  private:
   void make_kernels(int half_x, int half_y);
+  void prepare_book();
   void make_half_space_kernels();
   void make_line_kernels();
   void take_own_kernels();

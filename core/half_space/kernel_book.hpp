@@ -19,6 +19,10 @@ class kernel_book {
  public:
   static constexpr int points = 8;
   static constexpr double step = 1.0 / 32;  // of log(dy/dx)
+  // Grids in a row, each close to the one before, after which kept kernels are read. The ones
+  // before make their own, and `each` pages for later: all at once would take longer than a step's
+  // solve.
+  static constexpr int lead = 5, each = points / (lead - 1);
   // A page's arrays, one behind the other, each of `stride` numbers.
   static constexpr int most_arrays = 6;
 
@@ -37,17 +41,14 @@ class kernel_book {
   template <class Make>
   void read(double ratio, double scale, std::size_t count, double *const *out, Make &&make) {
     look_up(ratio, scale);
-    for (int k = 0; k < points; ++k) {
-      int page = find(first_ + k);
-      if (page < 0) {
-        page = free_page(first_ + k);
-        double *arrays[most_arrays];
-        for (int a = 0; a < arrays_; ++a) arrays[a] = array(page, a);
-        make(ratio_of(first_ + k), arrays);
-      }
-      chosen_[k] = page;
-    }
+    collect(points, make);
     mix(count, out);
+  }
+  // Writes some of the pages that a reading there will take.
+  template <class Make>
+  void prepare(double ratio, Make &&make) {
+    look_up(ratio, 1.0);
+    collect(each, make);
   }
   std::size_t bytes() const { return pages_.bytes() + entries_.bytes(); }
 
@@ -61,6 +62,21 @@ class kernel_book {
   };
   static double ratio_of(int place);
   void look_up(double ratio, double scale);
+  // Finds the pages that were looked up, and writes as many as are missing, `most` at most.
+  template <class Make>
+  void collect(int most, Make &&make) {
+    for (int k = 0; k < points; ++k) {
+      int page = find(first_ + k);
+      if (page < 0) {
+        if (most-- == 0) return;
+        page = free_page(first_ + k);
+        double *arrays[most_arrays];
+        for (int a = 0; a < arrays_; ++a) arrays[a] = array(page, a);
+        make(ratio_of(first_ + k), arrays);
+      }
+      chosen_[k] = page;
+    }
+  }
   int find(int place);
   int free_page(int place);
   void mix(std::size_t count, double *const *out) const;

@@ -75,7 +75,7 @@ void contact::step(const rp_input &input, rp_result &result) {
 // On the present grid.
 rp_result contact::solve(const rp_input &input) {
   rp_result out = empty_result();
-  for (auto &m : driver_->memories()) m.solved = false;
+  for (auto &m : driver_->memories()) m.solved = m.counted = false;
   for (int k = 0; k < 2; ++k) {
     const double given = input.bulk_temperature[k];
     driver_->solver().set_bulk_temperature(k, std::isnan(given) ? bulk_temperature_[k] : given);

@@ -80,6 +80,7 @@ void carry_over(const patch_memory &from, patch_memory &to) {
   to.share = from.share;
   std::copy_n(from.rail, 2, to.rail);
   to.approach = from.approach;
+  to.followed = from.followed;
   to.solved = false;
   const auto count = static_cast<size_t>(from.g.count());
   const bool holds = to.pressure.size() == 0 || count <= to.pressure.size();

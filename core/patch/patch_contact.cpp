@@ -70,9 +70,17 @@ heat_outcome patch_contact::leave_contact(const rolling_input &step, patch_memor
   return heat_.finish(nothing, memory);
 }
 
-bool patch_contact::start_from(patch_memory &memory, const grid &g) {
+void patch_contact::start_from(patch_memory &memory, patch_problem &problem) {
+  const grid &g = problem.g;
   const bool same_shape = memory.g.nx == g.nx && memory.g.ny == g.ny;
-  const bool follows = memory.warm && same_shape && influence::close(memory.g, g);
+  problem.follows = memory.warm && same_shape && influence::close(memory.g, g);
+  if (!problem.follows)
+    memory.followed = 0;
+  else if (!memory.counted)
+    memory.followed = std::min(memory.followed + 1, kernel_book::lead);
+  // a step that finds a height by many solves makes room for kept kernels once
+  problem.followed = memory.counted && memory.followed < kernel_book::lead ? 0 : memory.followed;
+  memory.counted = true;
   const bool same_size = memory.g.dx == g.dx && memory.g.dy == g.dy;
   if (memory.warm &&
       !(same_shape && (!same_size || (memory.g.x0 == g.x0 && memory.g.y0 == g.y0)))) {
@@ -97,14 +105,13 @@ bool patch_contact::start_from(patch_memory &memory, const grid &g) {
     }
   }
   memory.g = g;
-  if (memory.warm) return follows;
+  if (memory.warm) return;
   if (memory.heat) memory.heat->forget_friction();
   if (memory.pressure.size()) std::fill_n(memory.pressure.data(), g.count(), 0.0);
-  if (memory.px.size() == 0) return false;
+  if (memory.px.size() == 0) return;
   for (auto *field : {&memory.px, &memory.py})
     std::fill_n(field->data(), memory.columns() * memory.rows(), 0.0);
   if (shared_.scene.is_forced()) std::fill_n(memory.creepage.data(), 2, 0.0);
-  return false;
 }
 
 // The way through a patch. The contact area of unlike bodies is known only after the tractions, and
@@ -180,7 +187,7 @@ void patch_contact::warm_liquid(const patch_problem &problem, patch_memory &memo
 void patch_contact::begin_solve(const patch_problem &problem, patch_memory &memory) {
   if (shared_.influence) {
     const stage_mark mark = shared_.marks.enter(RP_STAGE_INFLUENCE);
-    shared_.influence->set_grid(problem.g, problem.follows);
+    shared_.influence->set_grid(problem.g, problem.followed);
     if (memory.curved) shared_.influence->set_rows(memory.curved->cosine(), memory.curved->sine());
     if (shared_.viscous)
       shared_.viscous->set(problem.g, problem.rolling.direction, problem.rolling_speed);

@@ -33,9 +33,9 @@ class patch_contact {
   void remember(patch_memory &memory) const;
   // A step without contact: the material moves on and bears no traction.
   heat_outcome leave_contact(const rolling_input &step, patch_memory &memory);
-  // Carries the memory's solution over to another grid, or clears it. Whether the grid goes on from
-  // one nearly like it.
-  bool start_from(patch_memory &memory, const grid &g);
+  // Carries the memory's solution over to the problem's grid, or clears it, and tells the problem
+  // whether that goes on from one nearly like it.
+  void start_from(patch_memory &memory, patch_problem &problem);
 
   // Derivatives of the last step's solution, which `memory` holds, in `count` directions; for
   // scenes with exact ones. The memory and later steps stay as they are.

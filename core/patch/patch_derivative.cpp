@@ -62,7 +62,7 @@ derivative_outcome patch_derivative::solve(const solution &s, const patch_variat
   const grid &g = s.problem.g;
   for (int k = 0; k < count; ++k) out[k] = {};
   if (!is_loaded(s.problem, s.memory)) return outcome;
-  if (s.a) s.a->set_grid(g, s.problem.follows);
+  if (s.a) s.a->set_grid(g, s.problem.followed);
   if (by_length_) by_length_->set_grid(g);
   rolling_ = s.problem.rolling;
   rolling_.spin_offset = s.scene.spin_offset * rolling_.direction * g.dx;

@@ -48,7 +48,8 @@ struct patch_problem {
   contact_parts parts;
   const past_tractions *past = nullptr;  // of wheels in transient rolling, with their number
   int past_count = 0;
-  bool follows = false;  // the grid goes on from one nearly like it: influence::set_grid()
+  bool follows = false;  // the grid goes on from one nearly like it
+  int followed = 0;      // steps in a row in which it did: influence::set_grid()
   double rolled = 0;  // m along x in the step, with it: near standstill not all of rolling.distance
 };
 
@@ -58,9 +59,11 @@ struct patch_memory {
   patch_memory() = default;
   // max_count: elements of the greatest grid.
   patch_memory(int max_count, int max_rows, const patch_scene &scene);
-  bool solved = false;  // fields belong to the last step
-  bool warm = false;    // pressure and traction may serve as a start
-  bool beyond = false;  // the normal problem left its range: what the patch carries is not known
+  bool solved = false;   // fields belong to the last step
+  bool warm = false;     // pressure and traction may serve as a start
+  int followed = 0;      // steps in a row whose grid went on from one nearly like it
+  bool counted = false;  // whether this step is among them, or none
+  bool beyond = false;   // the normal problem left its range: what the patch carries is not known
   grid g;
   double share = 1;         // in the wheel's force
   double rail[2] = {0, 0};  // m, lateral and vertical offset of the rail

@@ -2,8 +2,10 @@
 // that go with it. Saving, restoring, copying and the check of sizes all walk it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
+#include "half_space/kernel_book.hpp"
 #include "patch/patch_memory.hpp"
 
 namespace railpatch {
@@ -14,6 +16,7 @@ struct patch_state_head {
   std::array<double, 5> rolling;
   double share, rail[2];
   std::array<double, 3> bent;
+  // warm: 0 of none, else one more than how many grids were nearly like the ones before
   uint64_t warm, begun;
 };
 
@@ -24,7 +27,7 @@ inline patch_state_head head_of(const patch_memory &m) {
           m.share,
           {m.rail[0], m.rail[1]},
           m.history.bent,
-          m.warm ? 1u : 0u,
+          m.warm ? 1u + static_cast<uint64_t>(m.followed) : 0u,
           m.history.begun ? 1u : 0u};
 }
 
@@ -36,6 +39,7 @@ inline void set_head(patch_memory &m, const patch_state_head &head) {
   for (int k = 0; k < 2; ++k) m.rail[k] = head.rail[k];
   m.history.bent = head.bent;
   m.warm = head.warm != 0;
+  m.followed = m.warm ? static_cast<int>(std::min<uint64_t>(head.warm - 1, kernel_book::lead)) : 0;
   m.history.begun = head.begun != 0;
   m.solved = false;
 }

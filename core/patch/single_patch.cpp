@@ -92,7 +92,7 @@ void single_patch::step(const rp_input &in, rp_result &out) {
     report_beyond(problem.place, problem.g, result);
   } else {
     solver_.begin_step(problem, m);
-    solver_.start_from(m, problem.g);
+    solver_.start_from(m, problem);
     set_distance(problem, m);
     patch_wrench wrench;
     solver_.solve(problem, m, result, wrench);

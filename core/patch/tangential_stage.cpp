@@ -409,14 +409,14 @@ tangential_result tangential_stage::solve_by_law(const patch_problem &problem,
     return solve_viscous(problem, rolling, memory, options, found);
   if (!has_physics || !shared_.scene.law)
     return tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(),
-                               rolling, options, memory.fields(), problem.follows});
+                               rolling, options, memory.fields(), problem.followed});
   const bool goes_on = shared_.scene.goes_on(rolling);
   memory.history.start_from_before(g, *shared_.scene.law, goes_on);
   const inelastic_fields fields = memory.history.fields(*shared_.scene.law, goes_on);
   inelastic_sums sums;
   const tangential_result t =
       tangential_->solve({*shared_.influence, g, memory.pressure.data(), bound_.data(), rolling,
-                          options, memory.fields(), problem.follows, &fields, &sums});
+                          options, memory.fields(), problem.followed, &fields, &sums});
   for (size_t i = 0; i < static_cast<size_t>(g.count()); ++i)
     if (memory.pressure[i] > 0) memory.history.friction[i] /= memory.pressure[i];
   found.plastic = sums.plastic;
@@ -434,7 +434,7 @@ tangential_result tangential_stage::solve_viscous(const patch_problem &problem,
   viscous_influence &viscous = *shared_.viscous;
   tangential_result t = tangential_->solve({*shared_.influence, problem.g, memory.pressure.data(),
                                             bound_.data(), rolling, options, memory.fields(),
-                                            problem.follows, nullptr, nullptr, &viscous});
+                                            problem.followed, nullptr, nullptr, &viscous});
   const double loss = viscous.tangential_loss(memory.px.data(), memory.py.data());
   t.friction -= loss;
   found.viscous_power = problem.rolling_speed * loss;

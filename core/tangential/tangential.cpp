@@ -199,7 +199,7 @@ tangential_result tangential_solver::solve(const tangential_problem &problem) {
 
 influence &tangential_solver::products(const tangential_problem &problem) {
   if (!boxed_) return problem.a;
-  boxed_->set_grid(elements_.product_grid(problem.g), problem.follows);
+  boxed_->set_grid(elements_.product_grid(problem.g), problem.followed);
   return *boxed_;
 }
 

@@ -81,7 +81,7 @@ struct tangential_problem {
   const rolling_input &input;
   tangential_options options;
   tangential_fields fields;
-  bool follows = false;                         // see influence::set_grid()
+  int followed = 0;                             // see influence::set_grid()
   const inelastic_fields *inelastic = nullptr;  // of laws beyond Coulomb's, with their sums
   inelastic_sums *sums = nullptr;
   viscous_influence *viscous = nullptr;  // of viscoelastic bodies in steady rolling, in place of a

@@ -247,7 +247,7 @@ void wheel_contact::solve_patch(patch_contact &solver, patch_region &region, int
   if (hypot(origin[1] - memory.reference[1], origin[2] - memory.reference[2]) > warm_distance)
     memory.warm = false;
   memory.reference = origin;
-  problem.follows = solver.start_from(memory, g);
+  solver.start_from(memory, problem);
 
   place_patch(solver, region, memory, problem);
   const double depth = problem.place.depth;
