@@ -47,10 +47,12 @@ elliptic_film::elliptic_film(const film_contact &c) {
                -2.0 / 3.0 * (0.691 * d / (1.0 + 0.691 * d)), -7.0 / 20.0 * k_by_ratio - 1.0 / 24.0};
 }
 
+double film_point::thickness() const { return exp(over_unit) * unit; }
+
 film_point elliptic_film::at(double q) const {
   const double root = std::sqrt(q), log_q = q == 1.0 ? 0.0 : log(q);
   const double a = rigid_ / (q * q * std::sqrt(root));
-  const double e = q == 1.0 ? elastic_ : elastic_ * exp(0.4 * log_q);
+  const double stiff = q == 1.0 ? 1.0 : exp(0.4 * log_q), e = elastic_ * stiff;
   const double both = std::sqrt(std::sqrt(std::sqrt(e + limit_)));  // to the power 1/8
   const double b = 1.0 / (both * both * both);
   const double log_i = 2.0 / 3.0 * log(a + b);
@@ -58,12 +60,15 @@ film_point elliptic_film::at(double q) const {
   const double i_by_limit = 1.0 - i_by_ri - i_by_ei;
   if (!piezoviscous_) {
     const double by_part = -1.5 * i_by_ri - 0.1 * i_by_ei - 0.5;
-    return {exp(log_i) * unit_ / root, -2.0 * i_by_ri - 2.0 / 15.0 * i_by_ei,
-            1.5 * i_by_ri + 0.1 * i_by_ei + 0.5, by_part,
+    return {unit_ / root,
+            log_i,
+            -2.0 * i_by_ri - 2.0 / 15.0 * i_by_ei,
+            1.5 * i_by_ri + 0.1 * i_by_ei + 0.5,
+            by_part,
             i_by_ri * by_ratio_.ri + i_by_ei * by_ratio_.ei - i_by_limit};
   }
   const double log_p = log_piezo_ + 0.5 * log_q;
-  const double z = 1.2 * ratio_ * (q == 1.0 ? 1.0 : exp(-0.6 * log_q)), decay = exp(-z);
+  const double z = 1.2 * ratio_ * (stiff / q), decay = exp(-z);
   const double s = 1.5 * (1.0 + decay), way = log_i - log_p;
   // ln h = ln P + ln(1 + exp(s way))/s, from the greater of both
   const double y = s * way, small = exp(-std::fabs(y)), rest = log(1.0 + small);
@@ -76,7 +81,8 @@ film_point elliptic_film::at(double q) const {
   const double by_rp = (1.0 - of_i) * of_rigid_;
   const double by_ep = (1.0 - of_i) * (1.0 - of_rigid_) - by_s * s_by_ratio;
   film_point found;
-  found.thickness = exp(log_p + sum / s) * unit_ / root;
+  found.unit = unit_ / root;
+  found.over_unit = log_p + sum / s;
   found.by_load = -2.0 * by_ri - 2.0 / 15.0 * by_ei - by_ep / 12.0;
   found.by_speed = 1.5 * by_ri + 0.1 * by_ei + by_rp / 6.0 + 0.25 * by_ep + 0.5;
   found.by_part = -1.5 * by_ri - 0.1 * by_ei + 0.5 * (by_rp + by_ep) - 0.5;

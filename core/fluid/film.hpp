@@ -27,11 +27,12 @@ struct film_contact {
 };
 
 struct film_point {
-  double thickness;  // m
-  double by_load;    // d ln h/d ln F, at the same radii
-  double by_speed;   // d ln h/d ln(speed), and by the viscosity the same
-  double by_part;    // d ln h/d ln q
-  double by_ratio;   // d ln h/d ln D, at the same groups
+  double unit, over_unit;    // m; ln(h/unit)
+  double by_load;            // d ln h/d ln F, at the same radii
+  double by_speed;           // d ln h/d ln(speed), and by the viscosity the same
+  double by_part;            // d ln h/d ln q
+  double by_ratio;           // d ln h/d ln D, at the same groups
+  double thickness() const;  // m
   double by_radius_along() const { return 1.0 - by_speed - 2.0 * by_load + by_ratio; }
   double by_radius_across() const { return -by_ratio; }
 };

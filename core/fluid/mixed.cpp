@@ -36,6 +36,12 @@ struct inlet {
     slope = r * r / square;
     return h * r / std::sqrt(square);
   }
+  // ln(film/over)
+  double log_film(const film_point &flooded, double over, double &slope) const {
+    if (std::isfinite(layer)) return log(film(flooded.thickness(), slope) / over);
+    slope = 1;
+    return flooded.over_unit + log(factor * flooded.unit / over);
+  }
 };
 
 struct shared_load {
@@ -48,48 +54,91 @@ double touching_share(double hardness, double pressure) {
   return std::max(hardness / pressure, 1.0 + 1e-12);
 }
 
-// The root of ln(film of the liquid's part) = ln(sigma t(d)) by Newton's method within a bracket,
-// in u = ln(d - d_0), d_0 where asperities bear all: with it the liquid's part of the load falls to
-// 0 as e^u, and both sides are nearly straight lines over u, near d_0 and far from it. The left
-// side falls with u, the right one rises.
+// The sides of what share_load solves, at the distance d.
+struct load_balance {
+  double d, tail, bell, t;  // 1 - Phi, phi, mean film over sigma
+  double value;             // ln(film of the liquid's part) - ln(sigma t)
+  double falls;             // -d value/du > 0, u = ln(d - d_0)
+};
+
+load_balance balance_at(const elliptic_film &film, const inlet &in, double roughness, double most,
+                        double least, double way) {
+  load_balance at{};
+  at.d = least + way;
+  at.tail = beyond(at.d);
+  at.bell = density(at.d);
+  at.t = at.d < -4.0 ? mean_film(at.d) : at.d * (1.0 - at.tail) + at.bell;
+  const double q = std::clamp(1.0 - most * at.tail, 1e-14, 1.0);
+  const film_point point = film.at(q);
+  double slope;
+  at.value = in.log_film(point, roughness * at.t, slope);
+  at.falls = way * ((1.0 - at.tail) / at.t - slope * point.by_part * most * at.bell / q);
+  return at;
+}
+
+// Root by the cubic of u over the value through two points with their slopes: from the second one
+// on. Its error is as the product of the squares of both distances.
+double cubic_step(const load_balance &a, double way_from_a, const load_balance &b) {
+  const double y = b.value / (b.value - a.value);  // 0 at b, 1 at a
+  const double rise = way_from_a, to_a = -(a.value - b.value) / a.falls,
+               to_b = -(a.value - b.value) / b.falls;
+  // u - u_b = y (to_b + y (c + y e)), with y from 0 at b to 1 at a
+  const double c = 3.0 * rise - 2.0 * to_b - to_a, e = to_a + to_b - 2.0 * rise;
+  return y * (to_b + y * (c + y * e));
+}
+
+// What the root has, a short step du on.
+shared_load moved(const load_balance &at, double way, double du, double most, double roughness) {
+  const double s = way * du * (1.0 + 0.5 * du * (1.0 + du / 3.0));  // of d
+  const double bent = at.d * s;
+  const double tail = s * (1.0 - 0.5 * bent * (1.0 - bent / 3.0) - s * s / 6.0);
+  const double film = s * ((1.0 - at.tail) + at.bell * s * (0.5 - bent / 6.0));
+  return {std::clamp(most * (at.tail - at.bell * tail), 0.0, 1.0), roughness * (at.t + film),
+          at.d + s};
+}
+
+// The root of ln(film of the liquid's part) = ln(sigma t(d)) within a bracket, in u = ln(d - d_0),
+// d_0 where asperities bear all: with it the liquid's part of the load falls to 0 as e^u, and both
+// sides are nearly straight lines over u, near d_0 and far from it. The left side falls with u, the
+// right one rises. Newton's step first, then those of a cubic through the last two points.
 shared_load share_load(const elliptic_film &film, const inlet &in, double roughness,
                        double hardness, double pressure) {
   const double most = touching_share(hardness, pressure);
-  const double least = distance_of(1.0 / most);
-  const double touching = roughness * mean_film(least);
+  const double least = distance_of(1.0 / most), bell = density(least);
+  const double touching =
+      roughness * (least < -4.0 ? mean_film(least) : least * (1.0 - 1.0 / most) + bell);
   if (!(in.layer > touching)) return {1.0, in.layer};
   double slope;
   const film_point flooded = film.at(1.0);
-  const double all = in.film(flooded.thickness, slope);
+  const double log_all = in.log_film(flooded, touching, slope);
   // how far the mean planes part if the liquid bears all, and if asperities bear nearly all
-  const double lifted = std::max((all - touching) / roughness, 0.0);
+  const double lifted = std::max((exp(log_all) - 1.0) * touching / roughness, 0.0);
   const double apart = lifted / (1.0 - exp(-lifted) / most);
   const double power = std::min(slope * flooded.by_part, -1e-3);
-  const double part = exp(std::clamp(log(touching / all) / power, -20.0, 0.0));
-  const double close = std::min(part / (most * density(least)), 1.0 - std::min(least, 0.0));
-  double u = log(std::max(apart, close));
+  const double part = exp(std::clamp(-log_all / power, -20.0, 0.0));
+  const double close = std::min(part / (most * bell), 1.0 - std::min(least, 0.0));
+  double u = log(std::max(apart, close)), before_u = nan;
+  if (close > apart) {  // Newton's step from there, as the film there parts the planes too
+    const double rise = (1.0 - 1.0 / most) * close * roughness / touching;
+    u -= rise / (1.0 + 0.5 * rise) / (rise / (1.0 + rise) - power);
+  }
   double low = -HUGE_VAL, high = HUGE_VAL, width = HUGE_VAL;
   shared_load found{1.0, touching};
+  load_balance before{};
   for (int k = 0; k < 100; ++k) {
-    const double way = exp(u), d = least + way, tail = beyond(d), bell = density(d);
-    const double q = std::clamp(1.0 - most * tail, 1e-14, 1.0);
-    const film_point point = film.at(q);
-    const double h = in.film(point.thickness, slope);
-    const double t = d < -4.0 ? mean_film(d) : d * (1.0 - tail) + bell;
-    const double value = log(h / (roughness * t));
-    (value > 0 ? low : high) = u;
-    const double falls = way * (slope * point.by_part * most * bell / q - (1.0 - tail) / t);
-    const double newton = -value / falls;
-    // the error of what is found is the square of the last step
-    if (std::fabs(newton) < 1e-6) {
-      found.share = std::clamp(most * (tail - bell * way * newton), 0.0, 1.0);
-      found.film = roughness * (t + (1.0 - tail) * way * newton);
-      found.distance = d + way * newton;
-      break;
-    }
-    found = {std::min(most * tail, 1.0), roughness * t, d};
+    const double way = exp(u);
+    const load_balance at = balance_at(film, in, roughness, most, least, way);
+    (at.value > 0 ? low : high) = u;
+    const double newton = at.value / at.falls, last = u - before_u;
+    const double cubic = k > 0 ? cubic_step(before, -last, at) : nan;
+    const double step = cubic / newton > 0.5 && cubic / newton < 2.0 ? cubic : newton;
+    if (std::fabs(newton) < 1e-7 || std::fabs(newton * last) < 1e-7)
+      return moved(at, way, step, most, roughness);
+    found = {std::min(most * at.tail, 1.0), roughness * at.t, at.d};
     if (u < -40.0 || high - low < 1e-15 * std::fabs(u)) break;
-    const double next = u + newton, bracket = high - low;
+    before = at;
+    before_u = u;
+    const double next = u + step, bracket = high - low;
     const bool slow = k % 4 == 3 && !(bracket < 0.5 * width);
     if (k % 4 == 3) width = bracket;
     if (next > low && next < high && !(slow && std::isfinite(bracket)))
@@ -153,7 +202,7 @@ film_outcome solve_wet(const fluid_scene &scene, const fluid_supply &supply, wet
     found.film_thickness = both.film;
   } else {
     double slope;
-    found.film_thickness = in.film(film.at().thickness, slope);
+    found.film_thickness = in.film(film.at().thickness(), slope);
     found.share = exp(-1.8 * pow(found.film_thickness / scene.roughness, 1.2));
   }
   const double shear = shear_friction(scene, c, found.film_thickness);
@@ -244,7 +293,7 @@ film_outcome wet_rates(const fluid_scene &scene, const fluid_supply &supply,
   // of the logarithm of what the inlet leaves, where the liquid's part of the load stays
   double slope;
   const auto log_film = [&](const film_point &point) {
-    in.film(point.thickness, slope);
+    in.film(point.thickness(), slope);
     const double flooded = point.by_load * d.film.force / c.film.force +
                            point.by_speed * (d.film.speed / v + log_viscosity) +
                            point.by_radius_along() * d.film.radius[0] / c.film.radius[0] +
@@ -276,7 +325,7 @@ film_outcome wet_rates(const fluid_scene &scene, const fluid_supply &supply,
     }
   } else {
     const film_point point = film.at();
-    thickness = in.film(point.thickness, slope);
+    thickness = in.film(point.thickness(), slope);
     const double log_rate = log_film(point), exponent = 1.8 * pow(thickness / sigma, 1.2);
     share = exp(-exponent);
     out.film_thickness = thickness * log_rate;

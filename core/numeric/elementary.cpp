@@ -105,13 +105,12 @@ two_parts log_of(double x, double rest) {
     n = -54;
   }
   const auto bits = bits_of(x);
-  constexpr uint64_t fraction = (uint64_t{1} << 52) - 1;
-  n += static_cast<int>(bits >> 52) - 1023;
-  double m = number_of((bits & fraction) | bits_of(1.0));
-  if (m > 1.4142135623730951) {
-    m *= 0.5;
-    ++n;
-  }
+  constexpr uint64_t fraction = (uint64_t{1} << 52) - 1, unit = uint64_t{1023} << 52;
+  constexpr uint64_t root_of_two = 0x6a09e667f3bcd;  // its fraction
+  // without a branch, whose way would be as chance has it
+  const uint64_t part = bits & fraction, above = (root_of_two - part) >> 63;
+  n += static_cast<int>((bits >> 52) + above) - 1023;
+  const double m = number_of(part | (unit - (above << 52)));
   if (rest != 0) rest *= power_of(-n);
   // m = c (1 + r): c has 8 bits and the first part of r 24, so what is left of m is exact
   const double i = std::floor(m * 128 + 0.5), c = i * 0x1p-7;

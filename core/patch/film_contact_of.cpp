@@ -133,7 +133,7 @@ double inlet_reach(const patch_scene &scene, const hertz_contact &hertz, double 
     const film_contact contact{
         {along, 0.5 / hertz.curvatures[1]}, modulus, hertz.normal_force, speed, viscosity,
         fluid.pressure_coefficient};
-    film = elliptic_film(contact).at().thickness;
+    film = elliptic_film(contact).at().thickness();
   } else {
     const ehl_liquid liquid{viscosity, fluid.pressure_coefficient, ehl_viscosity::roelands, false};
     film = line_film(liquid, scene.modulus(), a, hertz.max_pressure, speed);

@@ -260,7 +260,7 @@ TEST(Ehl, CircularContactConvergesWithOrder) {
   const double limit = film[2] + (film[2] - film[1]) / (shrinks - 1);
   film_contact c{{radius, radius}, 2 * modulus,   b.problem.force,
                  b.problem.speed,  oil_viscosity, alpha};
-  EXPECT_NEAR(limit * b.unit / elliptic_film(c).at().thickness, 1, 0.1);
+  EXPECT_NEAR(limit * b.unit / elliptic_film(c).at().thickness(), 1, 0.1);
 }
 
 // Circular contact: the fit of Nijenbanning, Venner and Moes, and load, mass and complementarity.
@@ -271,7 +271,7 @@ TEST(Ehl, CircularContactHasThePublishedFilm) {
   ASSERT_TRUE(r.converged) << told(r);
   film_contact c{{radius, radius}, 2 * modulus,   b.problem.force,
                  b.problem.speed,  oil_viscosity, alpha};
-  EXPECT_NEAR(b.central() * b.unit / elliptic_film(c).at().thickness, 1, 0.05);
+  EXPECT_NEAR(b.central() * b.unit / elliptic_film(c).at().thickness(), 1, 0.05);
   EXPECT_NEAR(r.normal_force / b.problem.force, 1, 1e-8);
   EXPECT_LT(std::abs(r.imbalance), 1e-8);
   EXPECT_LT(b.least(), 0.75 * b.central());  // the horseshoe's sides
