@@ -21,13 +21,14 @@ constexpr double solved[] = {
 static_assert(sizeof solved / sizeof solved[0] ==
               strip_table::rows * strip_table::columns * strip_table::numbers);
 
-// Weights of four nodes 0, 1, 2, 3 at x (Lagrange).
-void weigh(double x, double w[4]) {
+struct four_weights {
+  double w[4];
+};
+
+// Of four nodes 0, 1, 2, 3 at x (Lagrange).
+RAILPATCH_INLINE four_weights weigh(double x) {
   const double a = x, b = x - 1, c = x - 2, d = x - 3;
-  w[0] = b * c * d / -6.0;
-  w[1] = a * c * d / 2.0;
-  w[2] = a * b * d / -2.0;
-  w[3] = a * b * c / 6.0;
+  return {{b * c * d * (-1.0 / 6.0), a * c * d * 0.5, a * b * d * -0.5, a * b * c * (1.0 / 6.0)}};
 }
 
 // The first of the four nodes about a place, 0 ... count - 1.
@@ -41,7 +42,7 @@ strip_table::place strip_table::place_of_s(double s) {
   const double at = (log(std::clamp(s, least_s, most_s)) - low_s) / across_s * (rows - 1);
   place p;
   p.first = first_of(at, rows);
-  weigh(at - p.first, p.weight);
+  std::copy_n(weigh(at - p.first).w, 4, p.weight);
   return p;
 }
 
@@ -49,7 +50,7 @@ strip_table::place strip_table::place_of_r(double r) {
   const double at = (std::sqrt(std::clamp(r, least_r, most_r)) - low_r) / across_r * (columns - 1);
   place p;
   p.first = first_of(at, columns);
-  weigh(at - p.first, p.weight);
+  std::copy_n(weigh(at - p.first).w, 4, p.weight);
   return p;
 }
 
@@ -94,39 +95,75 @@ double strip_table::share(double s, double r) { return std::clamp(number(s, r, 1
 double strip_table::end(double s, double r) { return number(s, r, 0); }
 
 // Of a row at y = b sin(v) the load is as cos^2(v), r as cos(v): sum of share cos^3(v) dv 3/4.
-double strip_table::share_of_ellipse(double s, double r) {
-  // Gauss and Legendre's six points of one half, 0 to pi/2
-  static constexpr double x[3] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
+double strip_table::rows_of::share_of_ellipse(double r) const {
+  // cosines of Gauss and Legendre's six points of 0 to pi/2
+  static constexpr double cosine[6] = {0.8264705149430952,  0.56298000668735571,
+                                       0.96480762309374257, 0.26295674629148197,
+                                       0.99859379802231674, 0.053013456323508387};
   static constexpr double w[3] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
   double sum = 0;
-  for (int k = 0; k < 3; ++k)
-    for (int sign = -1; sign <= 1; sign += 2) {
-      const double c = cos(0.25 * pi * (1.0 + sign * x[k]));
-      sum += w[k] * c * c * c * share(s, r * c);
-    }
+  for (int k = 0; k < 6; ++k) {
+    const double c = cosine[k];
+    const place p = place_of_r(r * c);
+    const double *v = of_r_.data() + p.first * numbers + 1;
+    double share = 0;
+    for (int j = 0; j < 4; ++j) share += p.weight[j] * v[j * numbers];
+    sum += w[k / 2] * c * c * c * std::clamp(share, 0.0, 1.0);
+  }
   return std::clamp(0.25 * pi * 1.5 * sum, 0.0, 1.0);
 }
 
-// of the nodes' number
-double strip_table::strip::between(double at) const {
-  const int first = first_of(at, profile_nodes);
-  double w[4], sum = 0;
-  weigh(at - first, w);
-  for (int k = 0; k < 4; ++k) sum += w[k] * liquid[static_cast<size_t>(first + k)];
-  return std::max(sum, 0.0);
+namespace {
+
+constexpr int at_once = 32;  // places of a strip
+
+// within this file: what chooses the clone would be seen from outside
+RAILPATCH_DISPATCH void find_pressures(const double *x, int count, double end, const double *liquid,
+                                       double *found) {
+  constexpr double each = (strip_table::profile_nodes - 1) / pi;
+  constexpr int last = strip_table::profile_nodes - 4;
+  const double over = 2.0 / end;
+  double part[at_once], at[at_once], weight[4][at_once];
+  int first[at_once];
+  for (int from = 0; from < count; from += at_once) {
+    const int here = std::min(at_once, count - from);
+    const double *place = x + from;
+    double *p = found + from;
+    // cosine of the nodes' angle, below -1 where the liquid has ended
+    for (int i = 0; i < here; ++i) part[i] = 1.0 - over * near_acos(-place[i]);
+    for (int i = 0; i < here; ++i) at[i] = near_acos(part[i]) * each;
+    for (int i = 0; i < here; ++i) {
+      const double within = part[i] > -1.0 ? at[i] : 0.0;
+      const int below = static_cast<int>(within) - 1, least = below > 0 ? below : 0;
+      first[i] = least < last ? least : last;
+    }
+    for (int i = 0; i < here; ++i) {
+      const four_weights of = weigh(at[i] - first[i]);
+      for (int k = 0; k < 4; ++k) weight[k][i] = of.w[k];
+    }
+    for (int i = 0; i < here; ++i) {
+      const double *v = liquid + first[i];
+      p[i] = weight[0][i] * v[0] + weight[1][i] * v[1] + weight[2][i] * v[2] + weight[3][i] * v[3];
+    }
+    for (int i = 0; i < here; ++i) p[i] = part[i] > -1.0 && p[i] > 0.0 ? p[i] : 0.0;
+  }
 }
+
+}  // namespace
 
 double strip_table::strip::pressure(double theta) const {
   if (!(theta < end) || !(theta > 0)) return 0;
   // nodes at theta = end (1 - cos(pi k/(nodes - 1)))/2
-  return between(acos(1.0 - 2.0 * theta / end) / pi * (profile_nodes - 1));
+  const double at = acos(1.0 - 2.0 * theta / end) / pi * (profile_nodes - 1);
+  const int first = first_of(at, profile_nodes);
+  const four_weights of = weigh(at - first);
+  double sum = 0;
+  for (int k = 0; k < 4; ++k) sum += of.w[k] * liquid[static_cast<size_t>(first + k)];
+  return std::max(sum, 0.0);
 }
 
 void strip_table::strip::pressures(const double *x, int count, double *found) const {
-  const double over = 2.0 / end, cavitation = -cos(end), each = (profile_nodes - 1) / pi;
-  for (int i = 0; i < count; ++i) found[i] = near_acos(1.0 - over * near_acos(-x[i]));
-  for (int i = 0; i < count; ++i)
-    found[i] = x[i] > -1 && x[i] < cavitation ? between(found[i] * each) : 0.0;
+  find_pressures(x, count, end, liquid.data(), found);
 }
 
 }  // namespace railpatch

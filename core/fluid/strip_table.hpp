@@ -8,12 +8,13 @@
 #include <cmath>
 
 #include "numeric/elementary.hpp"
+#include "numeric/simd.hpp"
 
 namespace railpatch {
 
 // acos within 2e-8, of -1 to 1 (a number beyond): Hastings' polynomial (Abramowitz and Stegun
 // 1964, 4.4.46).
-inline double near_acos(double x) {
+RAILPATCH_INLINE double near_acos(double x) {
   constexpr double pi = 3.141592653589793;
   const double y = std::fabs(x);
   double p = 0.0066700901 - 0.0012624911 * y;
@@ -39,9 +40,6 @@ class strip_table {
     double pressure(double theta) const;
     // At count places X, -1 the leading edge; angles within 4e-8.
     void pressures(const double *x, int count, double *found) const;
-
-   private:
-    double between(double at) const;
   };
   static constexpr int numbers = profile_nodes + 2;
   // logarithm of the least S and from it to the most, square root of the least r and from it
@@ -58,15 +56,14 @@ class strip_table {
    public:
     explicit rows_of(double s);
     strip at(double r) const;
+    // Of asperities, of all rows of an ellipse: r in its middle.
+    double share_of_ellipse(double r) const;
 
    private:
     std::array<double, columns * numbers> of_r_;
   };
-  // Share of asperities alone, and of all rows of an ellipse: r in its middle. S is the same in
-  // all.
-  static double share(double s, double r);
-  static double end(double s, double r);  // theta of X_c alone
-  static double share_of_ellipse(double s, double r);
+  static double share(double s, double r);  // of asperities alone
+  static double end(double s, double r);    // theta of X_c alone
 
  private:
   struct place {

@@ -6,6 +6,7 @@
 
 #include "fluid/asperities.hpp"
 #include "numeric/elementary.hpp"
+#include "numeric/sums.hpp"
 
 namespace railpatch {
 
@@ -60,43 +61,48 @@ fluid_strips::fluid_strips(bool elliptic, int max_nx, int max_ny) {
 }
 
 strip_outcome fluid_strips::of_ellipse(const hertz_contact &hertz, const strip_liquid &liquid) {
+  return of_ellipse(hertz, liquid, rows_of_ellipse(hertz, liquid));
+}
+
+strip_table::rows_of fluid_strips::rows_of_ellipse(const hertz_contact &hertz,
+                                                   const strip_liquid &liquid) {
+  // S is the same for all rows, as half lengths go with greatest pressures
+  return strip_table::rows_of(liquid.s(hertz.semi_axes[0], hertz.max_pressure));
+}
+
+strip_outcome fluid_strips::of_ellipse(const hertz_contact &hertz, const strip_liquid &liquid,
+                                       const strip_table::rows_of &rows) {
   strip_outcome found;
-  const double s = liquid.s(hertz.semi_axes[0], hertz.max_pressure);
   const double r = std::min(liquid.r(hertz.max_pressure), most_r);
-  found.share = strip_table::share_of_ellipse(s, r);
-  const double middle = strip_table::at(s, r).pressure(0.5 * pi);
+  found.share = rows.share_of_ellipse(r);
+  const double middle = rows.at(r).pressure(0.5 * pi);
   found.film = liquid.roughness * mean_film(distance_of(r * std::max(1.0 - middle, 1e-12)));
   return found;
 }
 
 strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const hertz_contact &hertz,
                                   int direction, const strip_liquid &liquid, double *fluid) {
-  const bool ellipse = hertz.semi_axes[0] > 0;
-  strip_outcome found;
-  std::optional<strip_table::rows_of> rows;
-  if (ellipse) {
-    found = of_ellipse(hertz, liquid);
-    // the same for all rows, as half lengths go with greatest pressures
-    rows.emplace(liquid.s(hertz.semi_axes[0], hertz.max_pressure));
-  }
-  double all = 0, left = 0, greatest = 0, beside = 0;
   std::fill_n(fluid, g.count(), 0.0);
-  if (!ellipse) found.converged = add_rows(g, pressure, direction, liquid, fluid);
-  // an ellipse's rows at y and -y are the same
-  const bool mirrored = std::fabs(g.y(0) + g.y(g.ny - 1)) < 1e-9 * g.dy;
-  for (int j = 0; j < g.ny; ++j) {
-    if (ellipse && mirrored && j > g.ny - 1 - j)
-      copy_row(g, g.ny - 1 - j, j, pressure, fluid);
-    else if (ellipse)
-      add_elliptic_row(g, j, pressure, hertz, direction, liquid, *rows, fluid);
-    for (int at = j * g.nx; at < (j + 1) * g.nx; ++at) {
-      all += pressure[at];
-      left += pressure[at] - fluid[at];
-      if (pressure[at] > greatest) greatest = pressure[at], beside = fluid[at];
-    }
+  strip_outcome found;
+  const bool ellipse = hertz.semi_axes[0] > 0;
+  if (ellipse) {
+    const strip_table::rows_of rows = rows_of_ellipse(hertz, liquid);
+    found = of_ellipse(hertz, liquid, rows);
+    // an ellipse's rows at y and -y are the same
+    const bool mirrored = std::fabs(g.y(0) + g.y(g.ny - 1)) < 1e-9 * g.dy;
+    for (int j = 0; j < g.ny; ++j)
+      if (mirrored && j > g.ny - 1 - j)
+        copy_row(g, g.ny - 1 - j, j, pressure, fluid);
+      else
+        add_elliptic_row(g, j, pressure, hertz, direction, liquid, rows, fluid);
+  } else {
+    found.converged = add_rows(g, pressure, direction, liquid, fluid);
+    const auto greatest = std::max_element(pressure, pressure + g.count()) - pressure;
+    found.film = liquid.film(pressure[greatest] - fluid[greatest]);
   }
-  if (all > 0) found.share = left / all;
-  if (!ellipse) found.film = liquid.film(greatest - beside);
+  const auto count = static_cast<size_t>(g.count());
+  const double all = total(pressure, count);
+  if (all > 0) found.share = (all - total(fluid, count)) / all;
   return found;
 }
 
@@ -105,19 +111,20 @@ void fluid_strips::add_elliptic_row(const grid &g, int j, const double *pressure
                                     const strip_liquid &liquid, const strip_table::rows_of &rows,
                                     double *fluid) {
   const double *axes = hertz.semi_axes;
-  // rows of elements whose middle lies outside have a sliver of the ellipse
-  const double level = std::sqrt(std::max(inside_ellipse(axes, 0.0, g.y(j)), 1e-6));
-  const double unit = level * hertz.max_pressure, half = level * axes[0];
-  const strip_table::strip row = rows.at(std::min(liquid.r(unit), most_r));
-  constexpr int block = 64;
-  double from_front[block], found[block];
   int from = 0, to = g.nx;
   while (from < to && !(pressure[j * g.nx + from] > 0)) ++from;
   while (to > from && !(pressure[j * g.nx + to - 1] > 0)) --to;
+  if (from == to) return;
+  // rows of elements whose middle lies outside have a sliver of the ellipse
+  const double level = std::sqrt(std::max(inside_ellipse(axes, 0.0, g.y(j)), 1e-6));
+  const double unit = level * hertz.max_pressure, to_front = -direction / (level * axes[0]);
+  const strip_table::strip row = rows.at(std::min(liquid.r(unit), most_r));
+  constexpr int block = 64;
+  double from_front[block], found[block];
   for (int begin = from; begin < to; begin += block) {
     const int count = std::min(block, to - begin), first = j * g.nx + begin;
     for (int i = 0; i < count; ++i)
-      from_front[i] = std::clamp(-direction * g.x(begin + i) / half, -1.0, 1.0);
+      from_front[i] = std::min(std::max(to_front * g.x(begin + i), -1.0), 1.0);
     row.pressures(from_front, count, found);
     for (int i = 0; i < count; ++i)
       fluid[first + i] = std::min(unit * found[i], most_part * pressure[first + i]);

@@ -59,6 +59,10 @@ class fluid_strips {
       return lanes.bytes() + one.bytes() + runs.bytes() + squares.bytes() + thetas.bytes();
     }
   };
+  static strip_table::rows_of rows_of_ellipse(const hertz_contact &hertz,
+                                              const strip_liquid &liquid);
+  static strip_outcome of_ellipse(const hertz_contact &hertz, const strip_liquid &liquid,
+                                  const strip_table::rows_of &rows);
   static void add_elliptic_row(const grid &g, int j, const double *pressure,
                                const hertz_contact &hertz, int direction,
                                const strip_liquid &liquid, const strip_table::rows_of &rows,

@@ -98,7 +98,7 @@ TEST(FluidStrip, SlowLiquidBearsNothing) {
   for (double r : {0.05, 0.3, 0.5}) {
     s.solve(elliptic_strip{}, 1e-7, r);
     EXPECT_NEAR(share_of(s), 1, 1e-6);
-    EXPECT_NEAR(strip_table::share_of_ellipse(0, r), 1, 1e-5);
+    EXPECT_NEAR(strip_table::rows_of(0).share_of_ellipse(r), 1, 1e-5);
   }
 }
 
@@ -114,6 +114,20 @@ TEST(FluidStrip, TableAgainstSolver) {
     for (int k = 0; k < s.nodes(); k += 16)
       EXPECT_NEAR(row.pressure(s.theta()[k]), s.liquid()[k], 5e-3) << number << " " << r;
   }
+}
+
+// Many places at once, whose angles are within 4e-8.
+TEST(FluidStrip, PlacesAtOnceAreThoseOneByOne) {
+  for (double number : {1e-3, 0.36, 50.0, 1e4})
+    for (int count : {1, 31, 32, 33, 77}) {
+      const strip_table::strip row = strip_table::at(number, 0.3);
+      std::vector<double> x(static_cast<size_t>(count)), found(x);
+      for (int i = 0; i < count; ++i)
+        x[static_cast<size_t>(i)] = count > 1 ? -1.0 + 2.0 * i / (count - 1) : 0.1;
+      row.pressures(x.data(), count, found.data());
+      for (size_t i = 0; i < x.size(); ++i)
+        EXPECT_NEAR(found[i], row.pressure(std::acos(-x[i])), 1e-6) << number << " " << x[i];
+    }
 }
 
 // Rows of elements cut out of an ellipse, each solved by itself, and the table.
