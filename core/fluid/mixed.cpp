@@ -97,6 +97,34 @@ shared_load moved(const load_balance &at, double way, double du, double most, do
           at.d + s};
 }
 
+// Where all touches: d_0, its density, the film there (m).
+struct all_touching {
+  double roughness, most, distance, density, film;
+};
+
+// d - d_0 about the root. log_all: ln of the film over the touching one if the liquid bears all;
+// power: of that film over the liquid's part.
+double way_to_begin(const all_touching &zero, double log_all, double power) {
+  const double d = zero.distance, whole = 1.0 - std::min(d, 0.0), rise = zero.most * zero.density;
+  double way;
+  if (log_all > 0) {  // as far as the mean planes part if the liquid bears all
+    const double lifted = (exp(log_all) - 1.0) * zero.film / zero.roughness;
+    way = std::max(lifted / (1.0 - exp(-lifted) / zero.most), std::min(1.0 / rise, whole));
+  } else {  // and if asperities bear nearly all
+    way = std::min(exp(std::max(-log_all / power, -20.0)) / rise, whole);
+  }
+  // Newton's step from there, both sides by few terms of their series about d_0
+  const double bend = (1.0 - d * d) * way;
+  const double part = rise * way * (1.0 - way * (d / 2.0 + bend / 6.0));
+  const double by_way = rise * way * (1.0 - way * (d + bend / 2.0));
+  if (!(part > 0 && part < 1 && by_way > 0)) return way;
+  const double touch = zero.film / zero.roughness, open = 1.0 - 1.0 / zero.most;
+  const double film = touch + way * (open + 0.5 * zero.density * way);
+  const double value = log_all + power * log(part) - log(film / touch);
+  const double falls = way * (open + zero.density * way) / film - power * by_way / part;
+  return way * exp(std::clamp(value / falls, -3.0, 3.0));
+}
+
 // The root of ln(film of the liquid's part) = ln(sigma t(d)) within a bracket, in u = ln(d - d_0),
 // d_0 where asperities bear all: with it the liquid's part of the load falls to 0 as e^u, and both
 // sides are nearly straight lines over u, near d_0 and far from it. The left side falls with u, the
@@ -111,17 +139,9 @@ shared_load share_load(const elliptic_film &film, const inlet &in, double roughn
   double slope;
   const film_point flooded = film.at(1.0);
   const double log_all = in.log_film(flooded, touching, slope);
-  // how far the mean planes part if the liquid bears all, and if asperities bear nearly all
-  const double lifted = std::max((exp(log_all) - 1.0) * touching / roughness, 0.0);
-  const double apart = lifted / (1.0 - exp(-lifted) / most);
   const double power = std::min(slope * flooded.by_part, -1e-3);
-  const double part = exp(std::clamp(-log_all / power, -20.0, 0.0));
-  const double close = std::min(part / (most * bell), 1.0 - std::min(least, 0.0));
-  double u = log(std::max(apart, close)), before_u = nan;
-  if (close > apart) {  // Newton's step from there, as the film there parts the planes too
-    const double rise = (1.0 - 1.0 / most) * close * roughness / touching;
-    u -= rise / (1.0 + 0.5 * rise) / (rise / (1.0 + rise) - power);
-  }
+  double u = log(way_to_begin({roughness, most, least, bell, touching}, log_all, power));
+  double before_u = nan;
   double low = -HUGE_VAL, high = HUGE_VAL, width = HUGE_VAL;
   shared_load found{1.0, touching};
   load_balance before{};
