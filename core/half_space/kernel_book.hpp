@@ -22,7 +22,7 @@ class kernel_book {
   // Grids in a row, each close to the one before, after which kept kernels are read. The ones
   // before make their own, and `each` pages for later: all at once would take longer than a step's
   // solve.
-  static constexpr int lead = 5, each = points / (lead - 1);
+  static constexpr int lead = 9, each = points / (lead - 1);
   // A page's arrays, one behind the other, each of `stride` numbers.
   static constexpr int most_arrays = 6;
 

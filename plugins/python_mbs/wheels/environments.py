@@ -86,6 +86,9 @@ def offline(minor: str, wheels: Path, folder: Path) -> Place:
     """The same, with everything fetched before into a folder."""
     place = own_python(minor, wheels, folder)
     house = folder / "house"
+    # pip keeps what is there under the name of a newer wheel
+    for old in house.glob("railpatch-*.whl"):
+        old.unlink()
     run(
         *(*place.python, "-m", "pip", "download", "--quiet", "--only-binary", ":all:"),
         *("--find-links", wheels, "--dest", house, "railpatch", "fmpy"),
