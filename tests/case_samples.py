@@ -48,5 +48,5 @@ def with_values(case: dict[str, Any], **values: Any) -> dict[str, Any]:
         if value is None:
             table.pop(name, None)
         else:
-            table[name] = value
+            table[name] = copy.deepcopy(value)
     return changed

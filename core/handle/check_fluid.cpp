@@ -112,6 +112,10 @@ const char *not_combined(const rp_config &c) {
   if (strip) {
     if (const char *unread = unread_by_strip(c)) return unread;
   }
+  if (c.fluid_model == RP_FLUID_FILM && c.fluid_share == RP_SHARE_LOAD_SHARING &&
+      c.fluid_mean_pressure >= c.fluid_hardness)
+    return "fluid_hardness must be above fluid_mean_pressure with fluid_share = load_sharing: "
+           "asperities could not bear it";
   const bool ehl = c.fluid_model == RP_FLUID_EHL;
   if (ehl) {
     if (const char *wrong = not_with_ehl(c)) return wrong;

@@ -28,6 +28,11 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         "fluid.eyring_stress: value is 5000000.0, allowed 0 with liquid = 'water', whose own "
         "friction is 0",
     ),
+    "asperities that could not bear the load": (
+        {**FILM, "share": "load_sharing", "hardness": 5e8},
+        "fluid.hardness: value is 500000000.0, allowed above mean_pressure, 6e+08 Pa, with "
+        "load_sharing",
+    ),
     "steam": (
         {**FILM, "temperature": 150.0},
         "fluid.temperature: value is 150.0, allowed 0 to 100 degrees C with liquid = 'water'",
@@ -120,6 +125,11 @@ def core_of(fluid: dict[str, Any], **changes: Any) -> Any:
 @pytest.mark.parametrize(
     ("fluid", "changes", "said"),
     [
+        (
+            {**FILM, "share": "load_sharing"},
+            {"fluid_hardness": 5e8},
+            "fluid_hardness must be above fluid_mean_pressure",
+        ),
         (FILM, {"fluid_eyring_stress": 5e6}, "fluid_eyring_stress must be 0 with fluid_liquid = w"),
         (FILM, {"fluid_temperature": 150.0}, r"fluid_temperature is 150, allowed is \[0, 100\]"),
         (FILM, {"fluid_temperature": -20.0}, r"fluid_temperature is -20, allowed is \[0, 100\]"),

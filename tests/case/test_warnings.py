@@ -204,7 +204,10 @@ MISTAKES: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "a boundary friction in per cent": (oil(boundary_friction=0.9), "boundary_friction above"),
     "an oil's shear stress in MPa": (oil(eyring_stress=5.0), "eyring_stress"),
-    "the bodies' hardness in kPa": (oil(share="load_sharing", hardness=2.8e6), "hardness"),
+    "the bodies' hardness in kPa": (
+        oil(share="load_sharing", hardness=2.8e6, mean_pressure="contact"),
+        "hardness",
+    ),
     "a mean pressure in kPa": (oil(share="load_sharing", mean_pressure=6e5), "mean_pressure"),
     "a halving speed in mm/s": (falling(halving_speed=400.0), "halving_speed"),
     "the second halving speed in mm/s": (

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import multiprocessing
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -196,6 +198,77 @@ def test_ended_command_says_what_is_kept(
     assert "143" in told
 
 
+def test_files_that_vary_count_by_their_content(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They start at the scene's folder, wherever the command runs; one that changed is solved
+    anew, rows and table have the names that the sweep has for them."""
+    scene = """kind = "patch"
+[geometry]
+undeformed_distance = "flat.csv"
+[grid]
+element_size = [5e-4, 5e-4]
+[load]
+normal_force = 1e3
+"""
+    sweep = """[sweep]
+scene = "scene.toml"
+outputs = ["max_pressure"]
+[[vary]]
+key = "geometry.undeformed_distance"
+values = ["flat.csv", "steep.csv"]
+"""
+    x = 5e-4 * (np.arange(12) - 5.5)
+
+    def write(name: str, radius: float) -> None:
+        gap = (x**2 + x[:, None] ** 2) / (2 * radius)
+        np.savetxt(tmp_path / name, gap, delimiter=",")
+
+    write("flat.csv", 0.4)
+    write("steep.csv", 0.2)
+    path, elsewhere = files(tmp_path, sweep, scene), tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    first = run_sweep(path, tmp_path / "out", page=False)
+    write("steep.csv", 0.1)
+    second = run_sweep(path, tmp_path / "out", page=False)
+    assert (second.solved, second.reused) == (1, 1)
+    (flat, steep), (same_flat, steeper) = (
+        [row.outputs[0] for row in found.rows] for found in (first, second)
+    )
+    assert same_flat == flat
+    # by Hertz as the cube root of the curvature squared
+    assert isinstance(steep, float)
+    assert isinstance(steeper, float)
+    assert steeper / steep == pytest.approx(4 ** (1 / 3), rel=0.1)
+    table = read_sweep(tmp_path / "out")
+    assert table["geometry.undeformed_distance"].to_pylist() == ["flat.csv", "steep.csv"]
+
+
+FOR_EVER = """import sys
+from railpatch.sweep import run_sweep
+if __name__ == "__main__":
+    def told(done, count):
+        if done > 2:
+            print("begun", flush=True)
+    run_sweep(sys.argv[1], sys.argv[2], workers=2, progress=told, page=False)
+"""
+
+
+def test_workers_end_with_the_process_that_started_them(tmp_path: Path) -> None:
+    """By a signal that it cannot answer: none holds its output any longer."""
+    sweep = SWEEP.replace("values = [0.1, 0.3]", "low = 0.1\nhigh = 0.5\ncount = 100000")
+    path, script = files(tmp_path, sweep), tmp_path / "script.py"
+    script.write_text(FOR_EVER, encoding="utf-8")
+    words = [sys.executable, str(script), str(path), str(tmp_path / "out")]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as started:
+        assert started.stdout is not None
+        assert started.stdout.readline() == "begun\n"
+        started.kill()
+        # the end of the pipe is told when all who could write to it have ended
+        started.communicate(timeout=60)
+
+
 def test_cases_that_fail_are_rows(tmp_path: Path) -> None:
     """With status and reason; the others are as they are. The command ends with exit code 3."""
     text = SWEEP.replace("[0.1, 0.3]", "[-1.0, 0.3]")
@@ -385,6 +458,8 @@ def test_logarithmic_keys_have_logarithmic_axes(tmp_path: Path) -> None:
         "friction.coefficient (log)": "log",
         "motion.creepage[0]": None,
     }
+    texts = {tuple(axis["ticktext"]) for axis in axes if axis.get("type") == "log"}
+    assert texts == {("0.001", "0.01", "0.1", "1")}
     found = {axis["name"]: axis.get("logarithmic") for axis in shown["parallel"]["data"]["axes"]}
     assert found.pop("friction.coefficient (log)")
     assert not any(found.values())

@@ -36,6 +36,8 @@ ELEMENT = {
 }
 # m, N, of a bump stop's last point
 STOP = ((1e-4, 1.0), (10.0, 1e7))
+# m, of cant that is none
+LEVEL = 1e-3
 # m, by which springs give under the weight of the body between them
 SAG = 1.0
 SUPPORT = {
@@ -171,7 +173,7 @@ def doubtful_support(support: SupportTable | None) -> list[str]:
 
 def low_outer_rail(alignment: AlignmentTable) -> Iterator[str]:
     """The warning of cant the other way round: as in turnouts alone."""
-    if alignment.cant < 0:
+    if alignment.cant < -LEVEL:
         yield (
             f"alignment.cant is {alignment.cant:g} m: the inner rail of the curve lies higher; > 0 "
             "raises the outer one, whichever way the curve turns"

@@ -267,6 +267,10 @@ class Fluid(Table):
             )
             if not read and self._changed(name):
                 yield relation(name, getattr(self, name), "only with share = 'load_sharing'")
+        nominal = 0.0 if self.mean_pressure == "contact" else self.mean_pressure
+        if self.share == "load_sharing" and self.hardness <= nominal:
+            allowed = f"above mean_pressure, {nominal:g} Pa, with load_sharing"
+            yield relation("hardness", self.hardness, allowed)
         if self.liquid_conductivity is not None and not self.inlet_heating:
             by_shear = self.core["eyring_stress"] > 0 and (
                 self.liquid is not None or self.viscosity_table is not None

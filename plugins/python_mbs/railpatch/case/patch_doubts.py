@@ -10,7 +10,9 @@ import numpy as np
 from railpatch.case.gap import KEY, read_gap
 from railpatch.case.own_influence import influence_doubts
 
-WIDEST = 1.0  # m, of a line contact
+WIDEST = 4.0  # m, of a line contact: few rollers are as wide
+NEAREST = 25.0  # per cent of the elements
+STEEP = 0.25  # of the grid, that they may be apart
 
 
 def patch_doubts(case: Any, folder: Path) -> list[str]:
@@ -29,16 +31,16 @@ def wide_lines(case: Any) -> list[str]:
 
 
 def steep_gaps(case: Any, folder: Path) -> list[str]:
-    """Of surfaces that stand on edge: at half of the elements farther apart than the grid is wide.
-    Single ones may be, as where there is nothing."""
+    """Of surfaces that stand on edge: the nearest quarter of the elements is farther apart than a
+    quarter of the grid's width. Others may be, where there is no material."""
     gap = read_gap(case.geometry.undeformed_distance, folder)
     if gap is None:
         return []
     sides = np.array(case.grid.element_size) * gap.shape[::-1]
-    apart, extent = float(np.median(gap) - gap.min()), float(sides.max())
-    if apart <= extent:
+    apart, extent = float(np.percentile(gap, NEAREST) - gap.min()), float(sides.max())
+    if apart <= STEEP * extent:
         return []
     return [
-        f"{KEY}: half of the elements are {apart:.3g} m or more farther apart than the nearest, "
-        f"on a grid of {extent:.3g} m: distances are in m"
+        f"{KEY}: three quarters of the elements are {apart:.3g} m or more farther apart than the "
+        f"nearest, on a grid of {extent:.3g} m: distances are in m"
     ]

@@ -57,8 +57,10 @@ class ParallelAxes {
     const height = 420;
     const [context, width] = prepare(this.canvas, height);
     this.width = width;
-    [this.top, this.bottom] = [64, height - 26];
     const gap = (width - 120) / Math.max(1, this.axes.length - 1);
+    const names = this.axes.map((axis) => this.broken(context, axis.name, gap - 8));
+    const most = names.reduce((count, lines) => Math.max(count, lines.length), 1);
+    [this.top, this.bottom] = [22 + 14 * most, height - 26];
     this.at = this.axes.map((_, i) => 50 + i * gap);
     const y = (share) => this.bottom - share * (this.bottom - this.top);
     let count = 0;
@@ -94,10 +96,27 @@ class ParallelAxes {
         context.fillStyle = ink.link;
         context.fillRect(this.at[k] - 4, y(range[1]), 8, y(range[0]) - y(range[1]));
       }
-      this.labels(context, axis, k, gap, y, ink);
+      this.labels(context, axis, names[k], k, gap, y, ink);
     });
     this.hint.textContent = `${count} of ${total} cases. Drag along an axis to choose cases, click it to ` +
-      `let them go. Colour: ${this.color.name}.`;
+      `let them go. Colour: ${this.color.name}, from ${digits(this.end("low"))}, dark, to ` +
+      `${digits(this.end("high"))}, light.`;
+  }
+
+  // of what colours tell
+  end(name) {
+    return this.color.logarithmic ? 10 ** this.color[name] : this.color[name];
+  }
+
+  // a name over as many lines as fit between two axes
+  broken(context, name, room) {
+    const lines = [""];
+    for (const part of name.split(/(?<=[._\s])/)) {
+      const longer = lines[lines.length - 1] + part;
+      if (context.measureText(longer).width > room && lines[lines.length - 1]) lines.push(part);
+      else lines[lines.length - 1] = longer;
+    }
+    return lines;
   }
 
   // a mark at each power of ten
@@ -111,19 +130,12 @@ class ParallelAxes {
     context.stroke();
   }
 
-  labels(context, axis, k, gap, y, ink) {
+  labels(context, axis, lines, k, gap, y, ink) {
     context.fillStyle = ink.soft;
     context.textAlign = "center";
     context.textBaseline = "bottom";
-    // names over two or three lines, of what fits between two axes
-    const lines = [""];
-    for (const part of axis.name.split(/(?<=[._\s(])/)) {
-      const longer = lines[lines.length - 1] + part;
-      if (context.measureText(longer).width > gap - 8 && lines[lines.length - 1]) lines.push(part);
-      else lines[lines.length - 1] = longer;
-    }
-    lines.slice(0, 3).forEach((line, i) => {
-      const up = this.top - 20 - 14 * (Math.min(3, lines.length) - 1 - i);
+    lines.forEach((line, i) => {
+      const up = this.top - 20 - 14 * (lines.length - 1 - i);
       const half = context.measureText(line).width / 2;
       const at = Math.min(Math.max(this.at[k], half), this.width - half);
       context.fillText(line, at, up);

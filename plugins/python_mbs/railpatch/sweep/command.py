@@ -95,7 +95,9 @@ def sweep(
     elif not quiet:
         show(found)
     warned = Counter(text for row in found.rows for text in row.warnings)
-    lines = [f"{text}; in {count} cases" for text, count in warned.most_common()]
+    lines = [
+        f"{text}; in {count} case{'s' if count > 1 else ''}" for text, count in warned.most_common()
+    ]
     lines += [f"outputs: no case has {name!r}" for name in found.never()]
     tell_warnings(lines, strict=strict, quiet=quiet)
     if found.failed:

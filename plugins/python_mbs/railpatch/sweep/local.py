@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack, contextmanager, suppress
-from multiprocessing import current_process, get_context
+from multiprocessing import current_process, get_context, parent_process
+from multiprocessing.connection import wait as wait_for
+from threading import Thread
 
 from railpatch.errors import CaseError
 from railpatch.sweep.work import Chunk, Row, get_ready, modules_of, solve_chunk
@@ -65,10 +68,22 @@ def start_server(kind: str) -> None:
         ensure_running()
 
 
+def end_with_parent() -> None:
+    """Lets a worker end when the process that started the pool does, by a signal too."""
+    parent = parent_process()
+    assert parent is not None
+
+    def watch() -> None:
+        wait_for([parent.sentinel])
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
+
+
 @contextmanager
 def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that end with this one; what waits is dropped on an error."""
-    pool = ProcessPoolExecutor(workers, mp_context=get_context(METHOD))
+    pool = ProcessPoolExecutor(workers, mp_context=get_context(METHOD), initializer=end_with_parent)
     try:
         yield pool
     finally:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from html import escape
 from pathlib import Path
@@ -25,6 +26,7 @@ PAGE = "sweep.html"
 # of what a page can show at once
 MOST_LINES = 5000
 MOST_OUTPUTS = 6
+MOST_TICKS = 7
 MOST_ROWS = 50
 MOST_KEYS = 4  # outputs among the key numbers
 LARGE = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
@@ -83,7 +85,8 @@ def is_logarithmic(sweep: Sweep, key: str) -> bool:
 
 def with_unit(text: str, unit: str) -> str:
     """A number's text."""
-    return f"{text}\u00a0{unit}" if unit else text
+    shown = unit.replace("^2", "\u00b2").replace("^3", "\u00b3")
+    return f"{text}\u00a0{shown}" if unit else text
 
 
 def glance(values: Array, unit: str) -> str:
@@ -194,7 +197,7 @@ def _sections(sweep: Sweep) -> list[str]:
         parts += _extremes(sweep, shown)
     parts.append(_unvaried(sweep))
     if shown:
-        parts += _parallel(sweep, shown[:MOST_OUTPUTS])
+        parts += _parallel(sweep, shown)
     warned = Counter(text for row in sweep.rows for text in row.warnings)
     if warned:
         parts.append(
@@ -282,7 +285,9 @@ def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
             # each has its own: on a narrow screen they stand below each other
             figure.update_xaxes(title_text=key_label(sweep, key), row=row, col=column)
             if logarithmic:
-                figure.update_xaxes(type="log", row=row, col=column)
+                ticks = logarithmic_ticks(at)
+                shown = {"tickvals": ticks, "ticktext": [f"{tick:g}" for tick in ticks]}
+                figure.update_xaxes(type="log", **shown, row=row, col=column)
             if texts:
                 figure.update_xaxes(
                     tickvals=list(range(len(texts))), ticktext=texts, row=row, col=column
@@ -297,6 +302,15 @@ def _responses(sweep: Sweep, outputs: list[str]) -> list[str]:
     figure.update_xaxes(exponentformat="SI")
     figure.update_yaxes(exponentformat="SI")
     return ["<h2>Responses</h2>" + text + plot(figure, "responses")]
+
+
+def logarithmic_ticks(values: Array) -> list[float]:
+    """1, 2 and 5 of each decade within the values, or powers of ten where these are many."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    found = [float(f"{digit}e{power}") for power in powers for digit in (1, 2, 5)]
+    inside = [tick for tick in found if low <= tick * (1 + 1e-9) and tick <= high * (1 + 1e-9)]
+    return inside if len(inside) <= MOST_TICKS else [float(f"1e{power}") for power in powers]
 
 
 def _few(count: int) -> NDArray[np.int64]:
@@ -335,9 +349,10 @@ def _parallel(sweep: Sweep, names: list[str]) -> list[str]:
         at, texts = key_values(sweep, key)
         axes.append(Axis(key_label(sweep, key), at[few][known], texts, is_logarithmic(sweep, key)))
     axes += [Axis(output_label(sweep, name), output_values(sweep, name)[few][known])
-             for name in names]  # fmt: skip
+             for name in names[:MOST_OUTPUTS]]  # fmt: skip
     left = len(sweep.rows) - int(known.sum())
     text = f"<p class=sub>{left} cases are not drawn.</p>" if left else ""
+    text += _left_out(names, MOST_OUTPUTS)
     shown = parallel_axes("parallel", axes, len(sweep.plan.keys))
     return ["<h2>All cases</h2>" + text + wide(shown, len(axes) // 2)]
 

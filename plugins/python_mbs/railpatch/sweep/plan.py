@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -135,7 +135,8 @@ class SweepFile(Table):
 
 @dataclass(frozen=True)
 class Plan:
-    """A checked sweep. content: of the scene; points: of every case, the values of the keys."""
+    """A checked sweep. content: of the scene; points: of every case, the values of the keys, files
+    by the names that the sweep has for them."""
 
     name: str
     table: SweepTable
@@ -144,6 +145,8 @@ class Plan:
     content: dict[str, Any]
     files: dict[str, str]  # path -> check sum of what the scene names
     points: list[tuple[Value, ...]]
+    named: dict[str, str] = field(default_factory=dict)  # values that are files -> their paths
+    sums: dict[str, str] = field(default_factory=dict)  # of these: path -> check sum
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -153,15 +156,25 @@ class Plan:
     def case(self, point: tuple[Value, ...]) -> dict[str, Any]:
         """The scene's content at a point. Raises CaseError."""
         content = deepcopy(self.content)
-        for key, value in zip(self.keys, point, strict=True):
+        for key, value in zip(self.keys, self.placed(point), strict=True):
             put(content, key, value)
         return content
 
+    def placed(self, point: tuple[Value, ...]) -> tuple[Value, ...]:
+        """The point's values, of files their paths."""
+        return tuple(self.named.get(v, v) if isinstance(v, str) else v for v in point)
+
     def ids(self) -> list[str]:
-        """Of each case, by its content: sweeps that have a case in common have its id in common."""
+        """Of each case, by its content and that of its files: sweeps that have a case in common
+        have its id in common."""
         base, keys = self._base, self.keys
+
+        def told(value: Value) -> str:
+            path = self.named.get(value) if isinstance(value, str) else None
+            return repr(value) if path is None else f"{path} {self.sums[path]}"
+
         return [
-            digest((base, *sorted(zip(keys, map(repr, point), strict=True))))
+            digest((base, *sorted(zip(keys, map(told, point), strict=True))))
             for point in self.points
         ]
 
@@ -212,7 +225,11 @@ def load_plan(path: str | Path, besides: tuple[str, ...] = ()) -> Plan:
     base = plain(read_toml(scene))
     kind = kind_of_content(base, scene)
     files = absolute_files(base, scene.parent)
-    plan = Plan(path.name, table, vary, kind, base, files, points_of(table, vary))
+    # as those of the scene, files that vary start at its folder
+    texts = {v: v for one in vary for v in one.values or () if isinstance(v, str)}
+    sums = absolute_files(texts, scene.parent)
+    named = {text: path for text, path in texts.items() if path in sums}
+    plan = Plan(path.name, table, vary, kind, base, files, points_of(table, vary), named, sums)
     plan.case(plan.points[0])
     return plan
 

@@ -192,7 +192,7 @@ def chunk_of(
         plan.content,
         plan.keys,
         tuple(ids[i] for i in places),
-        tuple(plan.points[i] for i in places),
+        tuple(plan.placed(plan.points[i]) for i in places),
         outputs,
         None if logs is None else str(logs.resolve()),
     )
