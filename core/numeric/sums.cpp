@@ -32,6 +32,11 @@ double total_of(const double *a, size_t n) {
 }
 
 RAILPATCH_DISPATCH
+double difference_of(const double *a, const double *b, size_t n) {
+  return sum(n, [=](size_t i) { return a[i] - b[i]; });
+}
+
+RAILPATCH_DISPATCH
 void dots_of(const double *a, size_t stride, int count, const double *v, size_t n, double *out) {
   for (int m = 0; m < count; ++m) {
     const double *own = a + static_cast<size_t>(m) * stride;
@@ -64,6 +69,10 @@ void subtract_from(const double *a, size_t stride, int count, const double *fact
 double dot(const double *a, const double *b, size_t n) { return dot_of(a, b, n); }
 
 double total(const double *a, size_t n) { return total_of(a, n); }
+
+double total_difference(const double *a, const double *b, size_t n) {
+  return difference_of(a, b, n);
+}
 
 void dots(const double *a, size_t stride, int count, const double *v, size_t n, double *out) {
   dots_of(a, stride, count, v, n, out);

@@ -8,6 +8,8 @@ namespace railpatch {
 
 double dot(const double *a, const double *b, size_t n);
 double total(const double *a, size_t n);
+// Of a - b, each to its own last digit.
+double total_difference(const double *a, const double *b, size_t n);
 
 // The same for several vectors, `stride` apart: out[m] = a_m . v
 void dots(const double *a, size_t stride, int count, const double *v, size_t n, double *out);

@@ -102,7 +102,7 @@ strip_outcome fluid_strips::solve(const grid &g, const double *pressure, const h
   }
   const auto count = static_cast<size_t>(g.count());
   const double all = total(pressure, count);
-  if (all > 0) found.share = (all - total(fluid, count)) / all;
+  if (all > 0) found.share = total_difference(pressure, fluid, count) / all;
   return found;
 }
 

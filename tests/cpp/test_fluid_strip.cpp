@@ -12,6 +12,7 @@
 #include "fluid/asperities.hpp"
 #include "fluid/strip_lanes.hpp"
 #include "fluid/strip_table.hpp"
+#include "numeric/sums.hpp"
 #include "patch/fluid_strips.hpp"
 
 namespace {
@@ -170,6 +171,20 @@ TEST(FluidStrip, RowsOfElements) {
         EXPECT_NEAR(back[static_cast<size_t>(j * g.nx + g.nx - 1 - i)],
                     direct[static_cast<size_t>(j * g.nx + i)], 2e-5 * hertz.max_pressure);
   }
+}
+
+// Where the liquid bears all but 1e-12, what it leaves is summed to its own last digits; the
+// difference of both sums has lost them.
+TEST(FluidStrip, WhatNextToNothingIsLeft) {
+  std::vector<double> pressure(257), fluid(pressure);
+  long double left = 0;
+  for (size_t k = 0; k < pressure.size(); ++k) {
+    pressure[k] = 1e9 * (1.0 + std::sin(static_cast<double>(k)));
+    fluid[k] = (1.0 - 1e-12) * pressure[k];
+    left += static_cast<long double>(pressure[k]) - fluid[k];
+  }
+  const double found = total_difference(pressure.data(), fluid.data(), pressure.size());
+  EXPECT_NEAR(found / static_cast<double>(left), 1, 1e-14);
 }
 
 // From a place nearby some marches find the end, and their rates what lies between: to the
