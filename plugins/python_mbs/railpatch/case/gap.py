@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,26 @@ def read_gap(value: str | list[list[float]] | None, folder: Path) -> NDArray[np.
     """m, [lateral, along rolling]. Raises CaseError that names the file and the line."""
     if value is None:
         return None
-    rows = read_rows(folder / value) if isinstance(value, str) else list(enumerate(value, 1))
+    if not isinstance(value, str):
+        return gap_of(list(enumerate(value, 1)))
+    path = (folder / value).absolute()
+    try:
+        about = path.stat()
+    except OSError:
+        return gap_of(read_rows(folder / value))  # which says what is wrong
+    return _gap_in(path, about.st_size, about.st_mtime_ns)
+
+
+@lru_cache(maxsize=4)
+def _gap_in(path: Path, _size: int, _changed: int) -> NDArray[np.float64]:
+    """Of a file, read once for all cases that name it; it must not be written to."""
+    gap = gap_of(read_rows(path))
+    gap.setflags(write=False)
+    return gap
+
+
+def gap_of(rows: list[tuple[int, list[float]]]) -> NDArray[np.float64]:
+    """m, of lines with their numbers. Raises CaseError."""
     if not rows:
         raise CaseError(f"{KEY}: value is empty, allowed one row of numbers per grid row")
     columns = len(rows[0][1])
