@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import railpatch
+import tomli_w
 from bits.combinations import sample
 from case_samples import PATCH, WHEELSET, with_values
 from click.testing import CliRunner
@@ -306,6 +307,23 @@ def test_a_mistake_is_warned_of(name: str) -> None:
     assert result.to_dict()["warnings"] == result.warnings
     with pytest.raises(railpatch.CaseError, match=words):
         railpatch.solve(case, strict=True)
+
+
+@pytest.mark.parametrize("name", ["a line contact's width in mm", "undeformed distances in mm"])
+def test_a_contact_and_explain_tell_doubts_of_the_case(name: str, tmp_path: Path) -> None:
+    """Which no step's result has, so that a step pays nothing for them."""
+    case, words = MISTAKES[name]
+    contact = railpatch.Contact(case)
+    (doubt,) = contact.doubts()
+    assert words in doubt
+    assert doubt not in contact.step().warnings
+    file = tmp_path / "case.toml"
+    file.write_text(tomli_w.dumps(case))
+    ran = CliRunner().invoke(cli, ["explain", str(file)])
+    assert ran.exit_code == 0
+    assert f"warning: {doubt}" in ran.stderr
+    assert CliRunner().invoke(cli, ["explain", "--quiet", str(file)]).stderr == ""
+    assert railpatch.Contact(PATCH).doubts() == []
 
 
 def test_other_heights_are_warned_of() -> None:

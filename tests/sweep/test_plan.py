@@ -79,6 +79,24 @@ logarithmic = true
     assert plan.content["motion"]["creepage"] == [1e-3, 0.0]
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "count"), [(-3e-3, 1e-3, 5), (-0.1, 0.2, 4), (-7.0, 3.0, 11)]
+)
+def test_a_range_through_zero_has_zero(tmp_path: Path, low: float, high: float, count: int) -> None:
+    """And not what rounding leaves of it: -4e-19, 1e-17."""
+    text = f"""[sweep]
+scene = "scene.toml"
+[[vary]]
+key = "motion.creepage[1]"
+low = {low}
+high = {high}
+count = {count}
+"""
+    found = [point[0] for point in load_plan(sweep_file(tmp_path, text)).points]
+    assert found.count(0.0) == 1
+    assert found == pytest.approx(np.linspace(low, high, count).tolist(), abs=1e-15)
+
+
 @pytest.mark.parametrize(("name", "cases"), [("latin_hypercube", 64), ("sobol", 64)])
 def test_points_fill_the_space(tmp_path: Path, name: str, cases: int) -> None:
     """Of each key one value in each of 64 parts of its range (Latin hypercube; Sobol's points are

@@ -138,6 +138,15 @@ class Contact:
         flange has there (docs/profiles.md)."""
         return [] if self._shelf is None else placement_doubts(self._case, self._shelf)
 
+    def doubts(self) -> list[str]:
+        """Warnings of the case itself, which no step's result has: its wheels' flanges, slices
+        along the track, widths and distances, own influence coefficients."""
+        return [
+            *self.placement_doubts(),
+            *beside_sections(self._case),
+            *patch_doubts(self._case, self._folder),
+        ]
+
     def noisy_profiles(self) -> list[str]:
         """Names of the profile files in whose points noise was found."""
         noisy = {} if self._shelf is None else self._shelf.noisy()
@@ -405,12 +414,7 @@ def solve(
     """
     contact = Contact(case, folder=folder)
     result = _solved(contact, fields)
-    said = [
-        *contact.placement_doubts(),
-        *beside_sections(contact.case),
-        *patch_doubts(contact.case, contact.folder),
-    ]
-    result.data["warnings"] = [*result.warnings, *said]
+    result.data["warnings"] = [*result.warnings, *contact.doubts()]
     notes = [*notes_of_solve(contact.case), *_add_pressure_error(contact, result)]
     if strict and result.warnings:
         raise CaseError(result.warnings)

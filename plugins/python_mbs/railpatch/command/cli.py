@@ -134,6 +134,7 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
         if choice is not None and contact.case.method.accuracy is not None:
             click.echo(choice.spell(contact.case.method.accuracy))
         print_stages([*contact.stages(), *contact.asked()], result)
+    tell_warnings([*result.warnings, *contact.doubts()], strict=False, quiet=quiet)
     if not result.good:
         context.exit(EXIT_NOT_CONVERGED)
 

@@ -32,6 +32,7 @@ SENSITIVITY = ("morris", "saltelli")
 MOST = 10_000_000
 # of every row, beside keys and outputs
 COLUMNS = ("id", "status", "reason", "warnings", "seconds")
+ROUNDING = 1e-15  # of a range's greater end
 LEVELS = 4  # of a key in Morris's design
 
 
@@ -123,7 +124,9 @@ class VaryTable(Table):
             return self.high if share else self.low
         if self.logarithmic:
             return math.exp((1 - share) * math.log(self.low) + share * math.log(self.high))
-        return float((1 - share) * self.low + share * self.high)
+        value = float((1 - share) * self.low + share * self.high)
+        # what rounding leaves of zero
+        return value if abs(value) > ROUNDING * max(abs(self.low), abs(self.high)) else 0.0
 
 
 class SweepFile(Table):
