@@ -83,7 +83,7 @@ def problems_of(case: Any, **options: Any) -> list[str]:
         (
             "motion__creepage",
             [[1e-3], 0.0],
-            "motion.creepage[0]: value is [0.001], allowed a number",
+            "motion.creepage[0]: value is [0.001], allowed 2 values",
         ),
         (
             "motion__tangential_force",
@@ -249,6 +249,53 @@ def test_wrong_values_of_a_wheelset(key: str, value: Any, line: str) -> None:
     # one of each side
     assert len(found) == (2 if key == "profiles__rail" else 1)
     assert found[0].startswith(line), found
+
+
+@pytest.mark.parametrize(
+    ("creepage", "lines"),
+    [
+        ([1, 2, 3], ["motion.creepage: value is [1, 2, 3], allowed 2 values"]),
+        ([[1e-3, 1.0, 2.0]], ["motion.creepage[0]: value is [0.001, 1.0, 2.0], allowed 2 values"]),
+        ([["a", 1.0]], ["motion.creepage[0][0]: value is 'a', allowed a number"]),
+        (5, ["motion.creepage: value is 5, allowed a list"]),
+        (
+            [1e-3, [1.0, 2.0]],
+            [
+                "motion.creepage[1]: value is [1.0, 2.0], allowed a number",
+                "motion.creepage[0]: value is 0.001, allowed a list",
+            ],
+        ),
+    ],
+)
+def test_one_pair_or_a_list_of_them_is_told_as_it_was_meant(
+    creepage: Any, lines: list[str]
+) -> None:
+    motion = {"regime": "transient_rolling", "distance": 1e-3, "rolling_speed": 10.0}
+    with pytest.raises(CaseError) as error:
+        load_scene(with_values(PATCH, motion={**motion, "creepage": creepage}))
+    assert error.value.problems == lines
+
+
+def test_many_wrong_elements_of_a_list_are_told_by_the_first_ones() -> None:
+    """Three one by one and how many more, of each kind of mistake; a fourth one by itself too."""
+    gap = sphere_gap(5)
+    gap[0][:] = [float("nan")] * 5
+    gap[2][:4] = ["a"] * 4
+    grid = {"element_size": [1e-3, 1e-3]}
+    with pytest.raises(CaseError) as error:
+        load_scene(with_values(PATCH, geometry={"undeformed_distance": gap}, grid=grid))
+    key, number = "geometry.undeformed_distance", "a number"
+    assert error.value.problems == [
+        *(f"{key}[0][{i}]: value is nan, allowed a finite number" for i in range(3)),
+        f"{key}: 2 more of its elements, allowed a finite number",
+        *(f"{key}[2][{i}]: value is 'a', allowed {number}" for i in range(4)),
+    ]
+
+
+def sphere_gap(count: int) -> list[list[Any]]:
+    """m, rows of the undeformed distance of a sphere of 0.5 m, elements of 1 mm."""
+    x = [1e-3 * (i - (count - 1) / 2) for i in range(count)]
+    return [[u * u + v * v for u in x] for v in x]
 
 
 def test_a_roller_has_no_cant() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -38,7 +40,9 @@ LENGTHS = ("too_short", "too_long")
 BELOW = {"motion.rolling_speed": "; motion.direction = -1 rolls towards -x"}
 # pydantic's names of the branch of a union that is a text
 TEXTS = (("str",), ("constrained-str",))
-
+# an element of a list that is wrong: the list, what is allowed
+ELEMENT = re.compile(r"([^:]*?)(?:\[\d+\])+: value is .*, allowed (.*)", re.DOTALL)
+MOST_ELEMENTS = 3  # told one by one
 
 # a value that is no table, or no list of tables
 NO_TABLE = ("list_type", "model_type", "model_attributes_type", "dict_type")
@@ -55,22 +59,83 @@ def problems(
     that may stand beside those of the model. among: files in which a key that is unknown here may
     have its place, nearest first."""
     found: list[str] = []
-    for item in error.errors(include_url=False):
-        # of the union path | rows only the branch that was meant is of use
-        if item["loc"][-1:] in TEXTS and isinstance(item["input"], list):
-            continue
+    keys: set[str] = set()
+    for item in of_meant_branches(error.errors(include_url=False)):
         if item["type"] == "relations":
             loc = tuple(item["loc"])
             each = [{"type": "relation", "loc": loc, "ctx": c} for c in item["ctx"]["found"]]
-            found += dict.fromkeys(problem(model, one, prefix) for one in each)
+            lines = dict.fromkeys(problem(model, one, prefix) for one in each)
+            found += lines
+            keys |= {line.split(":")[0] for line in lines}
             continue
         text = problem(model, item, prefix, beside, among)
         # a number or a word in its place
         if item["type"] == "literal_error" and found and found[-1] == number_of(text):
             found[-1] += f" or {item['ctx']['expected']}"
         # the branches of a union report the same key several times
-        if text.split(":")[0] not in {line.split(":")[0] for line in found}:
+        if text.split(":")[0] not in keys:
+            keys.add(text.split(":")[0])
             found.append(text)
+    return folded(found)
+
+
+def of_meant_branches(items: list[Any]) -> list[Any]:
+    """Without those of branches of a union that were not meant: a text where a list was given,
+    numbers where lists of numbers were, and the other way round."""
+    other = [of_another_branch(item) for item in items]
+    # where no branch fits all elements, what each says
+    places = {place_of(item) for item, is_other in zip(items, other, strict=True) if not is_other}
+    return [
+        item
+        for item, is_other in zip(items, other, strict=True)
+        if not is_other or (item["loc"][-1:] not in TEXTS and place_of(item) not in places)
+    ]
+
+
+def place_of(item: Any) -> tuple[Any, ...]:
+    """The path of an error up to a branch of lists."""
+    return tuple(item["loc"][: branch_of(item["loc"])])
+
+
+def branch_of(loc: tuple[Any, ...]) -> int:
+    """Where a path has the name of a branch of lists; its length: nowhere."""
+    lists = (k for k, part in enumerate(loc) if str(part).startswith("list["))
+    return next(lists, len(loc))
+
+
+def of_another_branch(item: Any) -> bool:
+    """Whether an error is of a branch that was not meant."""
+    loc, given = item["loc"], item["input"]
+    if loc[-1:] in TEXTS:
+        return isinstance(given, list)
+    at = branch_of(loc)
+    if at == len(loc):
+        return False
+    if str(loc[at]).startswith("list[list["):
+        return len(loc) == at + 2 and item["type"] == "list_type"
+    if len(loc) == at + 1:  # of the list itself: as its first element is
+        given = given[0] if isinstance(given, list) and given else None
+    return isinstance(given, list)
+
+
+def folded(lines: list[str]) -> list[str]:
+    """Of many elements of one list that are wrong in the same way the first ones, and how many
+    more there are."""
+    kinds = [ELEMENT.fullmatch(line) for line in lines]
+    count = Counter(kind.groups() for kind in kinds if kind)
+    told: Counter[tuple[str, ...]] = Counter()
+    found: list[str] = []
+    for line, kind in zip(lines, kinds, strict=True):
+        if kind is None or count[kind.groups()] <= MOST_ELEMENTS + 1:
+            found.append(line)
+            continue
+        told[kind.groups()] += 1
+        if told[kind.groups()] <= MOST_ELEMENTS:
+            found.append(line)
+        elif told[kind.groups()] == MOST_ELEMENTS + 1:
+            key, allowed = kind.groups()
+            more = count[kind.groups()] - MOST_ELEMENTS
+            found.append(f"{key}: {more} more of its elements, allowed {allowed}")
     return found
 
 

@@ -91,7 +91,7 @@ def make_pair(
     click.echo(f"  {about['pair']}  {found['cases']} states  force {texts[0]}  moment {texts[1]}")
     if found["force"][2] > error:
         click.echo(
-            f"  95 % lie below {100 * found['force'][1]:.2f} %, not {100 * error:g} % as asked for",
+            f"  95 % lie below {100 * found['force'][2]:.2f} %, not {100 * error:g} % as asked for",
             err=True,
         )
 

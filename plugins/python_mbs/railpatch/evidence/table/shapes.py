@@ -254,18 +254,28 @@ def refine(
         # a round has few states: well below, so that a larger sample holds
         if found < 0.8 * error:
             return
-        needed = NEEDED * error if found < FAR_OFF * error else 0.0
-        for place, own in zip(places, errors, strict=True):
-            if len(shapes) < most and len(own) and own.max() > needed:
-                shapes.add(place)
-                step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
+        learn(shapes, places, errors, error, most, step)
         shapes.keep(kept)
+
+
+def learn(
+    shapes: Shapes, places: list[Place], errors: list[Vector], error: float, most: int,
+    step: Callable[[str], None],
+) -> None:  # fmt: skip
+    """Adds shapes of places that were tried and err by too much."""
+    found = float(np.quantile(np.concatenate(errors), LEVEL))
+    needed = NEEDED * error if found < FAR_OFF * error else 0.0
+    for place, own in zip(places, errors, strict=True):
+        if len(shapes) < most and len(own) and own.max() > needed:
+            shapes.add(place)
+            step(f"{len(shapes)} shapes, 95 % below {100 * found:.2f} %")
 
 
 def judge(
     shapes: Shapes, check: int, table: Path, about: dict[str, Any], step: Callable[[str], None]
-) -> bytes:
-    """The table's bytes with its error from so many states of places that made no shape."""
+) -> tuple[bytes, list[Place], list[Vector]]:
+    """The table's bytes with its error from so many states of places that made no shape, these
+    places, and their errors of the force."""
     table.write_bytes(shapes.data(FAR, [1.0, 1.0], {}))
     places = [shapes.pair.place() for _ in range(-(-check // STATES))]
     told = []
@@ -286,7 +296,7 @@ def judge(
         "version": _core.version(),
     }
     stated = [float(np.quantile(found, LEVEL)) for found in (force, moment)]
-    return shapes.data(reach, stated, about)
+    return shapes.data(reach, stated, about), places, [own for own, _ in told]
 
 
 def make_shapes(
@@ -294,8 +304,9 @@ def make_shapes(
     most: int, parts: Path,
 ) -> bytes:  # fmt: skip
     """The bytes of a table for a pair. error: of force over friction's bound, asked for of 95 % of
-    the states; check: states that tell it; step: called with what is being done; most: shapes;
-    parts: a folder for what is solved, from which a run that was stopped goes on. Raises OSError.
+    the states; check: states that tell it, others each time until it is reached; step: called with
+    what is being done; most: shapes; parts: a folder for what is solved, from which a run that was
+    stopped goes on. Raises OSError.
     """
     parts.mkdir(parents=True, exist_ok=True)
     kept, table = parts / "shapes.npz", parts / "table.bin"
@@ -306,6 +317,12 @@ def make_shapes(
         step(f"{len(shapes)} shapes")
         if len(shapes) % KEPT == 0:
             shapes.keep(kept)
-    refine(shapes, error, most, table, kept, step)
-    about = {"asked": error, "seconds": round(shapes.seconds)}
-    return judge(shapes, check, table, about, step)
+    while True:
+        refine(shapes, error, most, table, kept, step)
+        about = {"asked": error, "seconds": round(shapes.seconds)}
+        data, places, errors = judge(shapes, check, table, about, step)
+        if len(shapes) >= most or np.quantile(np.concatenate(errors), LEVEL) <= error:
+            return data
+        # the rounds' few states were lucky: these are no longer held out
+        learn(shapes, places, errors, error, most, step)
+        shapes.keep(kept)
