@@ -289,8 +289,8 @@ void check_bulk(const rp_config &c, const rp_input &in, checker &check) {
   const bool exchanges =
       c.heat_exchange == 1 || stores || c.bulk_temperature[0] != c.bulk_temperature[1];
   check.require(exchanges || step[0] == step[1],
-                "bulk_temperature of wheel and rail must be equal in a scene with equal ones and "
-                "heat_exchange = 0");
+                "bulk_temperature (temperature.wheel, temperature.rail) must be equal in a scene "
+                "where both are, unless heat flows between the bodies (temperature.exchange)");
 }
 
 // Where the normal force follows from the approach, only the solve can tell what friction carries.

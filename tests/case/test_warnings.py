@@ -503,6 +503,17 @@ def test_slices_along_a_rail(x: float, end: float, words: str) -> None:
     assert words in "".join(found)
 
 
+@pytest.mark.parametrize(("y", "told"), [(0.7175, False), (-0.7175, True)])
+def test_a_rail_on_the_other_side(y: float, told: bool) -> None:
+    case = with_values(LOADED, track__right={"origin": [y, 0.0]})
+    said = [text for text in railpatch.Contact(case).doubts() if "origin" in text]
+    assert bool(said) == told
+    assert not told or said == [
+        "track.right.origin[0] is -0.7175 m, on the other side of the track: y is to the right, "
+        "> 0 of the right rail"
+    ]
+
+
 @pytest.mark.parametrize(("coefficient", "scale", "told"), [(0.6, 2.0, 1), (1.2, 0.5, 0)])
 def test_friction_of_a_step(coefficient: float, scale: float, told: int) -> None:
     """By the coefficient with the step's own factor."""

@@ -289,7 +289,7 @@ WHEEL_REFUSED = [
     ({"first": "5203100", "track": "-1. 10. 20. 460."}, "GAUGHT <= 0"),
     ({"wheelset": "1360. -70. 460. 70."}, "YTAPE"),
     ({"first": "1203130", "support": "100. 500. 0. 0. 1."}, "DYSTEP0"),
-    ({"rail": "'rail.txt' 0 1. 2. -1"}, "ISMOOTH = 0"),
+    ({"rail": "'rail.txt' 0 1. 2. -1"}, "SMOOTH = 2 of 'rail.txt' by ISMOOTH = 0"),
     ({"rail": "'rail.txt' 0 3. 0. -1"}, "SCALE = 3"),
     ({"rail": "rail.txt 0 3. 0. -1"}, "expected a name"),
     ({"second": "1022033", "friction": "2\n-0.2 0.1 0.1\n0.1 0.3 0.2"}, "no multiples"),

@@ -67,6 +67,8 @@ def test_a_mark_of_byte_order_and_names_in_capitals(tmp_path):
 
 
 SHIFT = text_of(BASIC, first="201100", rolling="", motion="1000. -0.0004 0. 0.", end="")
+ROLLS = "3 MODULE\n002100\n102000\n0130211\n1000. -0.0012 0. 0.\n"
+ROLLS += "0d 0.6 15000.\n0.28 0.28 82000. 82000.\n"
 GOES_ON = "3 MODULE\n001100\n100000\n0130211\n1000. -0.0008 0. 0.\n0 MODULE\n"
 
 
@@ -113,6 +115,58 @@ def test_the_programs_own_test(folder):
     assert values == pytest.approx((42083.1, 4883.3, 4617.4, 23.7), abs=0.06, rel=1e-5)
     assert theirs["PMAX"] == pytest.approx(675.4, abs=0.05)
     assert (theirs["CKSI"], theirs["CPHI"]) == pytest.approx((0.001, 0.0004))
+
+
+def test_a_shift_is_told_in_mm(folder: Path, tmp_path: Path) -> None:
+    """What the file gives is what is told: CKSI, CETA in mm, CPHI in rad; slip of elements too: of
+    a shift far beyond friction all elements slip by it, less what the elastic bodies take."""
+    path = folder / "far.inp"
+    path.write_text(
+        text_of(BASIC, first="201100", rolling="", motion="1000. 0.1 0.04 0.002", end="0 MODULE")
+    )
+    (found,) = solve_file(path, fields=True)
+    theirs = found.in_contact()
+    told = theirs["CKSI"], theirs["CETA"], theirs["CPHI"]
+    assert told == pytest.approx((0.1, 0.04, 0.002), rel=1e-12)
+    assert theirs["VELOC"] is None
+    slip = np.array(theirs["sx"])[np.array(theirs["pn"]) > 0]
+    assert 0.05 < np.abs(slip).mean() < 0.11
+    # and as a file of ours, also of a history, of its last step
+    out = tmp_path / "shift"
+    done = CliRunner().invoke(cli, ["convert", str(path), "-o", str(out)])
+    assert done.exit_code == 0, done.output
+    file = done.output.split()[0]
+    ran = CliRunner().invoke(cli, ["solve", file, "--signs", "contact"])
+    (ours,) = json.loads(ran.stdout)
+    told = ours["CKSI"], ours["CETA"], ours["CPHI"]
+    assert told == pytest.approx((0.1, 0.04, 0.002), rel=1e-12)
+    path.write_text(SHIFT + ROLLS + ROLLS + "0 MODULE\n")
+    done = CliRunner().invoke(cli, ["convert", str(path), "-o", str(tmp_path / "rolls")])
+    ran = CliRunner().invoke(cli, ["solve", done.output.split()[0], "--signs", "contact"])
+    assert ran.exit_code == 0, ran.output
+    (ours,) = json.loads(ran.stdout)
+    assert (ours["CKSI"], ours["VELOC"]) == pytest.approx((-0.0012, 15000.0), rel=1e-12)
+    last = solve_file(path)[-1].in_contact()
+    assert last.pop("MZ") == pytest.approx(ours.pop("MZ"), abs=1e-12)
+    assert {**ours, "case": 3} == last
+
+
+def test_a_list_tells_steps_of_one_contact(folder: Path) -> None:
+    """And why no file has them all, as `convert` does."""
+    path = folder / "steps.inp"
+    path.write_text(SHIFT + ROLLS + "0 MODULE\n")
+    listed = CliRunner().invoke(cli, ["convert", str(path), "--list"])
+    assert listed.exit_code == 0
+    assert listed.output.splitlines() == [
+        f"steps.inp: case {k}: patch, step {k} of 2 of the contact of case 1" for k in (1, 2)
+    ]
+    path.write_text(SHIFT + ROLLS.replace("1000. -0.0012", "1100. -0.0012") + "0 MODULE\n")
+    listed = CliRunner().invoke(cli, ["convert", str(path), "--list"])
+    made = CliRunner().invoke(cli, ["convert", str(path), "-o", str(folder / "steps")])
+    assert listed.exit_code == made.exit_code == 2
+    said = "a sequence whose load changes has no counterpart in a file"
+    assert said in listed.output.splitlines()[0]
+    assert said in made.output
 
 
 def test_an_own_grid_off_the_origin(folder):

@@ -446,6 +446,21 @@ def test_the_page_names_outputs_that_do_not_vary(tmp_path: Path) -> None:
     )
 
 
+def test_a_sweep_whose_first_middle_and_last_cases_are_refused(tmp_path: Path) -> None:
+    """They are rows as others; where all are refused it says why and writes nothing."""
+    sweep = SWEEP.replace("[0.1, 0.3]", "[-0.1, 0.3, -0.2, 0.3, -0.3]").replace(
+        "[-2e-3, 1e-3, 4e-3]", "[1e-3]"
+    )
+    found = run_sweep(files(tmp_path, sweep), tmp_path / "out", page=False)
+    status = ["refused", "converged", "refused", "converged", "refused"]
+    assert [row.status for row in found.rows] == status
+    assert "value is -0.2, allowed >= 0" in str(found.rows[2].reason)
+    wrong = sweep.replace("0.3, -0.2, 0.3, -0.3", "-0.3, -0.2, -0.3, -0.3")
+    with pytest.raises(railpatch.CaseError, match=r"value is -0\.1, allowed >= 0"):
+        run_sweep(files(tmp_path, wrong), tmp_path / "none", page=False)
+    assert not (tmp_path / "none").exists()
+
+
 def test_logarithmic_keys_have_logarithmic_axes(tmp_path: Path) -> None:
     """Of responses and parallel coordinates, with a mark on their names; others stay linear."""
     text = SWEEP.replace(

@@ -24,9 +24,11 @@ from wheelset_demo.vehicle.plausible import (
     doubtful_elements,
     doubtful_support,
     doubts_of,
+    too_fast,
     unmet_dips,
 )
 from wheelset_demo.vehicle.scene import load_vehicle_scene
+from wheelset_demo.vehicle.sections import SectionTable
 from wheelset_demo.vehicle.support import SupportTable
 
 SCENES = ("vehicle_curve", "vehicle_straight", "freight_wagon", "locomotive")
@@ -61,6 +63,30 @@ def test_cant_of_the_inner_rail() -> None:
         curve = AlignmentTable(radius=4000.0, cant=cant)
         told = doubts_of(replace(scene, alignment=curve))
         assert any("inner rail" in text for text in told) == warned
+
+
+@pytest.mark.parametrize(
+    ("speed", "told"),
+    [
+        # V^2/R - g cant/1.5 m: 22.3 m/s^2 of 144 m/s for 144 km/h, 1.06 m/s^2
+        (144.0, "22.3 m/s^2"),
+        (40.0, ""),
+    ],
+)
+def test_a_speed_in_km_an_hour_in_a_curve(speed: float, told: str) -> None:
+    for curve in (
+        AlignmentTable(radius=900.0, cant=0.11),
+        AlignmentTable(
+            section=[
+                SectionTable(kind="straight", length=100.0),
+                SectionTable(kind="transition", length=50.0),
+                SectionTable(kind="arc", length=100.0, radius=-900.0, cant=0.11),
+            ]
+        ),
+    ):
+        said = list(too_fast(speed, curve))
+        assert len(said) == (1 if told else 0)
+        assert told in "".join(said)
 
 
 def test_steps_that_pass_what_excites_a_vehicle() -> None:

@@ -12,6 +12,7 @@ from wheelset_demo.vehicle.bodies import BodyTable, VehicleTable
 from wheelset_demo.vehicle.deviations import DipTable
 from wheelset_demo.vehicle.elements import ElementTable
 from wheelset_demo.vehicle.scene import VehicleScene
+from wheelset_demo.vehicle.sections import CANT_BASE
 from wheelset_demo.vehicle.support import SupportTable
 from wheelset_demo.vehicle.wet_track import WetTable
 
@@ -38,6 +39,8 @@ ELEMENT = {
 STOP = ((1e-4, 1.0), (10.0, 1e7))
 # m, of cant that is none
 LEVEL = 1e-3
+# m/s^2, across, that cant does not take: twice what trains that tilt have
+UNBALANCED = 4.0
 # m, by which springs give under the weight of the body between them
 SAG = 1.0
 SUPPORT = {
@@ -71,6 +74,7 @@ def doubts_of(scene: VehicleScene) -> list[str]:
         *doubtful_elements(scene.vehicle),
         *doubtful_support(scene.support),
         *low_outer_rail(scene.alignment),
+        *too_fast(scene.speed, scene.alignment),
         *unmet_dips(scene.dip, scene.way),
         *unmet_water(scene.wet, scene.way),
     ]
@@ -178,6 +182,27 @@ def low_outer_rail(alignment: AlignmentTable) -> Iterator[str]:
             f"alignment.cant is {alignment.cant:g} m: the inner rail of the curve lies higher; > 0 "
             "raises the outer one, whichever way the curve turns"
         )
+
+
+def too_fast(speed: float, alignment: AlignmentTable) -> Iterator[str]:
+    """The warning of a speed (m/s) that no train has in the curves of its track."""
+    arcs = {"alignment": (alignment.radius, alignment.cant)}
+    if alignment.section is not None:
+        arcs = {
+            f"alignment.section[{k}]": (section.radius, section.cant)
+            for k, section in enumerate(alignment.section)
+        }
+    for name, (radius, cant) in arcs.items():
+        if radius is None:
+            continue
+        left = speed**2 / abs(radius) - GRAVITY * cant / CANT_BASE
+        if left > UNBALANCED:
+            yield (
+                f"wheelset.speed is {speed:g} m/s: in a curve of {name}.radius {radius:g} m with a "
+                f"cant of {cant:g} m {left:.3g} m/s^2 are left across the track, above "
+                f"{UNBALANCED:g} m/s^2"
+            )
+            return
 
 
 def unmet_dips(dips: tuple[DipTable, ...], reached: float) -> list[str]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import difflib
+from collections.abc import Iterable, Mapping
 from typing import Any
+
+import numpy as np
 
 from railpatch.case.fluid import MOVED
 from railpatch.case.friction import MOVED_FRICTION
@@ -115,7 +118,22 @@ def refuse_unknown(changes: Mapping[str, Any], keys: Mapping[str, Any], prefix: 
     if wrong:
         allowed = ", ".join(keys)
         raise CaseError(
-            f"{prefix}{key}: value is {show(changes[key])}, but this is no moving input of the "
-            f"case, allowed {allowed}"
+            f"{prefix}{key}: value is {shown(changes[key])}, but this is no moving input of the "
+            f"case, allowed {allowed}{meant(key, keys)}"
             for key in wrong
         )
+
+
+def shown(value: Any) -> str:
+    """As of other values, of arrays their size."""
+    return f"an array of shape {value.shape}" if isinstance(value, np.ndarray) else show(value)
+
+
+def meant(key: str, keys: Iterable[str]) -> str:
+    """A hint at the key that was perhaps meant: without its table, or spelt in another way."""
+    own = key.rsplit(".", 1)[-1]
+    if own == "regime":
+        return "; a case whose regime changes says so by motion.regimes, wheels by regime_changes"
+    known = {name.lower(): name for name in keys}
+    close = difflib.get_close_matches(own.lower(), known, 1, 0.6)
+    return f"; did you mean {known[close[0]]!r}?" if close else ""

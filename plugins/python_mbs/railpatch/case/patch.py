@@ -505,7 +505,8 @@ class PatchCase(Table):
         sized = self.grid is not None and self.grid.element_size and self.grid.max_elements
         if self.geometry.curvatures is not None and not sized:
             allowed = f"element_size and max_elements with curvatures and {which}"
-            yield relation("grid", "another", allowed)
+            shown = "none" if self.grid is None else str(self.grid.model_dump(exclude_none=True))
+            yield relation("grid", shown, allowed)
 
     def _check_force(self) -> Problems:
         """What a prescribed tangential force needs."""

@@ -187,7 +187,20 @@ def placement_doubts(case: WheelCase, shelf: Shelf) -> list[str]:
         flange = flange_in(case, placed)
         for text in flange.doubts(case.wheelset.flange_back_position) if flange else ():
             found[f"{Path(placed.profile.name).name}: {text}"] = None
-    return [*found, *dropped_heights(case, shelf), *far_apart(case)]
+    return [*found, *dropped_heights(case, shelf), *far_apart(case), *other_sides(case)]
+
+
+def other_sides(case: WheelCase) -> list[str]:
+    """Warnings of rails whose origin lies beyond the middle of the track."""
+    found = []
+    for side, sign in (("left", -1), ("right", 1)):
+        origin = getattr(case.track, side).origin if side in case.sides else None
+        if origin is not None and sign * origin[0] < 0:
+            found.append(
+                f"track.{side}.origin[0] is {origin[0]:g} m, on the other side of the track: y is "
+                "to the right, > 0 of the right rail"
+            )
+    return found
 
 
 def far_apart(case: WheelCase) -> list[str]:

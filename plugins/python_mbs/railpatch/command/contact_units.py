@@ -10,7 +10,8 @@ from typing import Any
 import click
 import scipy
 
-from railpatch.case.load import read_toml
+from railpatch.case.load import load_scene
+from railpatch.case.patch import PatchCase
 from railpatch.command.group import EXIT_NOT_CONVERGED, tell_warnings, wrong_calls
 from railpatch.command.output import check_output
 from railpatch.command.tables import print_result
@@ -44,8 +45,7 @@ def solve_in_contact_units(
                 theirs.append(one.in_contact())
         else:
             results = [solve(case, with_fields)]
-            motion = read_toml(case).get("motion")
-            theirs = [{"case": 1, **in_contact(results[0].to_dict(), motion=motion)}]
+            theirs = [{"case": 1, **in_contact(results[0].to_dict(), motion=last_motion(case))}]
         if mat is not None:
             write_whole(mat, matlab(theirs))
     if signs:
@@ -64,6 +64,18 @@ def solve_in_contact_units(
         if not quiet:
             click.echo(f"status: {bad[0].status}: {bad[0].reason}", err=True)
         context.exit(EXIT_NOT_CONVERGED)
+
+
+def last_motion(file: Path) -> dict[str, Any] | None:
+    """[motion] of a case's last step, of which its result is."""
+    case = load_scene(file).case
+    if not isinstance(case, PatchCase):
+        return None
+    motion = case.motion
+    return motion.model_dump() | {
+        "creepage": (motion.creepages or [[None, None]])[-1],
+        "regime": motion.of_steps[-1],
+    }
 
 
 def matlab(cases: list[dict[str, Any]]) -> bytes:

@@ -10,7 +10,9 @@ import click
 from railpatch.command.group import WrongCall, quiet_flag, wrong_calls
 from railpatch.command.output import check_folder
 from railpatch.errors import CaseError
+from railpatch.inp.files import Converted, sequences
 from railpatch.inp.files import convert as cases_of_file
+from railpatch.inp.sequences import changes_of, joined
 from railpatch.inp.written import missing_profile, named_profiles, plan, write_cases
 
 
@@ -67,11 +69,16 @@ def show_list(source: Path, *, quiet: bool) -> bool:
     for path in files:
         lines = []
         try:
-            for one in cases_of_file(path):
+            found = cases_of_file(path)
+            of_steps = states_of_steps(found, path)
+            for one in found:
                 wrong = one.refused or first_missing(one.tables or {}, path)
-                state = wrong or (one.tables or {})["kind"]
-                lines.append(f"{path.name}: case {one.case.number}: {state}")
-                bad = bad or wrong is not None
+                state, is_wrong = of_steps.get(one.case.number, ("", False))
+                lines.append(
+                    f"{path.name}: case {one.case.number}: "
+                    f"{wrong or (one.tables or {})['kind'] + state}"
+                )
+                bad = bad or wrong is not None or is_wrong
         except CaseError as error:
             bad = True
             lines.append(f"cannot be read: {error}")
@@ -79,6 +86,28 @@ def show_list(source: Path, *, quiet: bool) -> bool:
             for line in lines:
                 click.echo(line)
     return bad
+
+
+def states_of_steps(found: list[Converted], source: Path) -> dict[int, tuple[str, bool]]:
+    """By their number, of cases that are steps of one contact: which, and at the first one why no
+    file has them all, if so; and whether it is wrong."""
+    out: dict[int, tuple[str, bool]] = {}
+    for steps in sequences(found):
+        first = steps[0].case.number
+        if len(steps) == 1 or any(step.refused for step in steps):
+            continue
+        for k, step in enumerate(steps, start=1):
+            out[step.case.number] = (
+                f", step {k} of {len(steps)} of the contact of case {first}",
+                False,
+            )
+        try:
+            for step in steps[1:]:
+                changes_of(step, steps, source.name)
+            joined(steps, source.name)
+        except CaseError as error:
+            out[first] = f", step 1 of {len(steps)}: {error}", True
+    return out
 
 
 def first_missing(tables: dict[str, Any], source: Path) -> str | None:

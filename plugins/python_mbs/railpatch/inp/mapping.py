@@ -145,7 +145,10 @@ class Mapping:
         law, one = f["L"], f["sets"][0]
         if law == 0:
             if one["FSTAT"] != one["FKIN"]:
-                raise self.refuse("L = 0 with FSTAT other than FKIN")
+                raise self.refuse(
+                    f"L = 0 with FSTAT other than FKIN (its line of friction has {one['FSTAT']:g} "
+                    f"and {one['FKIN']:g})"
+                )
             table: dict[str, Any] = {"coefficient": one["FSTAT"]}
         elif law == 6:
             if f["MEMDST"] != 0:

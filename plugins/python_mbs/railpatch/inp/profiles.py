@@ -45,7 +45,10 @@ def profiles_of(
         p = blocks[body]
         smooth, method = p["SMOOTH"], int(p.get("ISMOOTH", 0))
         if smooth > 0 and method == 0:
-            raise refuse(f"SMOOTH = {smooth:g} by ISMOOTH = 0 (1 or 2 have a length)")
+            raise refuse(
+                f"SMOOTH = {smooth:g} of {p['file']!r} by ISMOOTH = 0, which is no length (write "
+                "SMOOTH = 0, or PRFOPT = 1 and ISMOOTH 1 or 2 first in the line below it),"
+            )
         lengths.append(MM * max(smooth, 0.0))
         suffix = Path(p["file"]).suffix.lower()
         if suffix in ENDINGS.values() and suffix != ENDINGS[body]:

@@ -25,9 +25,13 @@ def patch_in_contact(
     motion: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Of one patch: FN, FX, FY (N), MZ (N mm), PEN (mm), CKSI, CETA (-), CPHI (rad/mm), areas
-    (mm^2), PMAX (N/mm^2), VELOC (mm/s), and with fields these. offset: m, of the origin that
-    moments and spin are about from the contact's. motion: of the case, whose creepages are given
-    and in no result. What the case has not is null."""
+    (mm^2), PMAX (N/mm^2), VELOC (mm/s), TMAX (degrees C, greatest temperature), and with fields
+    these; of a shift CKSI and CETA in mm, CPHI in rad, slip in mm, and no VELOC. offset: m, of the
+    origin that moments and spin are about from the contact's. motion: of the case, whose creepages
+    are given and in no result. What the case has not is null."""
+    shift = (motion or {}).get("regime") == "shift"
+    # creepages and slip are of rolling, or in m
+    length = 1e3 if shift else 1.0
     patch = (motion or {}) | {key: value for key, value in patch.items() if value is not None}
     force = patch.get("creep_force") or [None, None]
     spin, creepage = patch.get("spin_creepage"), patch.get("creepage") or [None, None]
@@ -43,19 +47,21 @@ def patch_in_contact(
         "FY": scaled(force[1], -1.0),
         "MZ": scaled(moment, -1e3),
         "PEN": scaled(patch["approach"], 1e3),
-        "CKSI": scaled(creepage[0], -1.0),
-        "CETA": scaled(creepage[1], -1.0),
-        "CPHI": scaled(spin, -1e-3),
-        "VELOC": scaled(patch.get("rolling_speed"), 1e3),
+        "CKSI": scaled(creepage[0], -length),
+        "CETA": scaled(creepage[1], -length),
+        "CPHI": scaled(spin, -1e-3 * length),
+        "VELOC": None if shift else scaled(patch.get("rolling_speed"), 1e3),
         "AREA": scaled(patch["contact_area"], 1e6),
         "PMAX": scaled(patch["max_pressure"], 1e-6),
         "TMAX": patch.get("max_temperature"),
     }
-    return found | fields_in_contact(patch, offset)
+    return found | fields_in_contact(patch, offset, length)
 
 
-def fields_in_contact(patch: dict[str, Any], offset: tuple[float, float]) -> dict[str, Any]:
-    """[rows][columns], of a patch with fields."""
+def fields_in_contact(
+    patch: dict[str, Any], offset: tuple[float, float], length: float = 1.0
+) -> dict[str, Any]:
+    """[rows][columns], of a patch with fields. length: what slip is told in, of our unit."""
     found = {}
     for name, (own, unit) in FIELDS.items():
         if (values := patch.get(own)) is not None:
@@ -63,6 +69,7 @@ def fields_in_contact(patch: dict[str, Any], offset: tuple[float, float]) -> dic
             found[name] = (unit * np.asarray(values, dtype=float) + moved).tolist()
     for names, (own, unit) in VECTORS.items():
         if (values := patch.get(own)) is not None:
+            unit *= length if own == "micro_slip" else 1.0
             for name, part in zip(names.split(","), np.asarray(values, dtype=float), strict=True):
                 found[name] = (unit * part).tolist()
     if (values := patch.get("temperature")) is not None:

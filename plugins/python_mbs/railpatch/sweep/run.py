@@ -10,6 +10,8 @@ from pathlib import Path
 from statistics import median_low
 from threading import Thread
 
+import numpy as np
+
 from railpatch.case.load import KINDS, check_case
 from railpatch.case.moving import moving_keys
 from railpatch.errors import CaseError, ProfileError
@@ -21,6 +23,8 @@ from railpatch.sweep.work import REFUSED, Chunk, Row, solve_chunk, solve_first
 
 SECONDS = 1.0  # of a chunk, about
 MOST_IN_CHUNK = 5000
+# cases that are tried for one that is not refused: at first, besides, and s for these
+LEAST_TRIED, MOST_TRIED, LONGEST_TRIED = 3, 60, 10.0
 PAGE = "railpatch.sweep.page"  # imported late: workers import this module
 
 
@@ -111,10 +115,16 @@ def kept_of(plan: Plan, folder: Path) -> str:
 def first_of(
     plan: Plan, ids: list[str], places: list[int], outputs: tuple[str, ...], logs: Path | None
 ) -> tuple[tuple[str, ...], Row]:
-    """The names of the outputs and one case: the first, the middle or the last one, whichever is
-    not refused. Raises CaseError, ProfileError of the first one where all are."""
+    """The names of the outputs and one case that is not refused: of the first, the middle and the
+    last one, and then of others here and there. Raises CaseError, ProfileError of the first one
+    where all these are."""
     errors: list[CaseError | ProfileError] = []
-    for place in dict.fromkeys((places[0], places[len(places) // 2], places[-1])):
+    begin = time.monotonic()
+    others = np.random.default_rng(0).permutation(len(places))[:MOST_TRIED]
+    tried = (0, len(places) // 2, len(places) - 1, *others.tolist())
+    for place in dict.fromkeys(places[k] for k in tried):
+        if len(errors) >= LEAST_TRIED and time.monotonic() - begin > LONGEST_TRIED:
+            break
         try:
             return solve_first(chunk_of(plan, ids, [place], outputs, logs))
         except (CaseError, ProfileError) as error:
