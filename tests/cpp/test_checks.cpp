@@ -733,7 +733,7 @@ TEST_F(Checks, Inputs) {
   expect("", [](rp_input &i) { i.bulk_temperature[0] = 30; });
   base.bulk_temperature[0] = base.bulk_temperature[1] = 20;
   expect("", [](rp_input &i) { i.bulk_temperature[0] = i.bulk_temperature[1] = 30; });
-  expect("bulk_temperature of wheel and rail must be equal",
+  expect("bulk_temperature (temperature.wheel, temperature.rail) must be equal",
          [](rp_input &i) { i.bulk_temperature[0] = 30; });
   base.heat_exchange = 1;
   expect("", [](rp_input &i) { i.bulk_temperature[0] = 30; });
