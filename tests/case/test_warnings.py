@@ -323,6 +323,9 @@ def test_a_contact_and_explain_tell_doubts_of_the_case(name: str, tmp_path: Path
     assert ran.exit_code == 0
     assert f"warning: {doubt}" in ran.stderr
     assert CliRunner().invoke(cli, ["explain", "--quiet", str(file)]).stderr == ""
+    strict = CliRunner().invoke(cli, ["explain", "--strict", str(file)])
+    assert strict.exit_code == 2
+    assert words in strict.stderr
     assert railpatch.Contact(PATCH).doubts() == []
 
 

@@ -458,6 +458,9 @@ def test_a_sweep_whose_first_middle_and_last_cases_are_refused(tmp_path: Path) -
     wrong = sweep.replace("0.3, -0.2, 0.3, -0.3", "-0.3, -0.2, -0.3, -0.3")
     with pytest.raises(railpatch.CaseError, match=r"value is -0\.1, allowed >= 0"):
         run_sweep(files(tmp_path, wrong), tmp_path / "none", page=False)
+    misspelt = sweep.replace("max_pressure", "max_presure")
+    with pytest.raises(railpatch.CaseError, match="did you mean 'max_pressure'"):
+        run_sweep(files(tmp_path, misspelt), tmp_path / "none", page=False)
     assert not (tmp_path / "none").exists()
 
 

@@ -115,9 +115,10 @@ def solve(
 
 @cli.command()
 @click.argument("case", metavar="CASE.toml", type=CASE)
+@strict_flag()
 @QUIET
 @click.pass_context
-def explain(context: click.Context, case: Path, quiet: bool) -> None:
+def explain(context: click.Context, case: Path, strict: bool, quiet: bool) -> None:
     """Show which stages a case needs, why, and what they cost.
 
     The case is solved once from a cold start; the time share is measured in it.
@@ -134,7 +135,7 @@ def explain(context: click.Context, case: Path, quiet: bool) -> None:
         if choice is not None and contact.case.method.accuracy is not None:
             click.echo(choice.spell(contact.case.method.accuracy))
         print_stages([*contact.stages(), *contact.asked()], result)
-    tell_warnings([*result.warnings, *contact.doubts()], strict=False, quiet=quiet)
+    tell_warnings([*result.warnings, *contact.doubts()], strict=strict, quiet=quiet)
     if not result.good:
         context.exit(EXIT_NOT_CONVERGED)
 

@@ -117,7 +117,7 @@ def first_of(
 ) -> tuple[tuple[str, ...], Row]:
     """The names of the outputs and one case that is not refused: of the first, the middle and the
     last one, and then of others here and there. Raises CaseError, ProfileError of the first one
-    where all these are."""
+    where all these are, or of one that was solved and has no such output."""
     errors: list[CaseError | ProfileError] = []
     begin = time.monotonic()
     others = np.random.default_rng(0).permutation(len(places))[:MOST_TRIED]
@@ -129,7 +129,8 @@ def first_of(
             return solve_first(chunk_of(plan, ids, [place], outputs, logs))
         except (CaseError, ProfileError) as error:
             errors.append(error)
-    raise errors[0]
+    of_outputs = (error for error in errors if str(error).startswith("sweep.outputs:"))
+    raise next(of_outputs, errors[0])
 
 
 def time_of(plan: Plan, chunk: Chunk, row: Row) -> float:
